@@ -1,0 +1,37 @@
+# nepho_add_tests(<name> LABELS ... SOURCES ... LIBS ... [DEFINES ...] [ENV ...] [WHOLE]): a
+# GoogleTest program in the layer `tests`. One ctest entry per TEST, or one in all with WHOLE (for
+# programs whose set-up costs more than their tests: an OpenGL context, a compiled shader).
+function(nepho_add_tests name)
+  cmake_parse_arguments(A "WHOLE" "" "LABELS;SOURCES;LIBS;DEFINES;ENV" ${ARGN})
+  nepho_add_test_program(${name} SOURCES ${A_SOURCES} LIBS ${A_LIBS} DEFINES ${A_DEFINES})
+  if(A_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}")
+  else()
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}.
+      PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}")
+  endif()
+endfunction()
+
+function(nepho_add_test_program name)
+  cmake_parse_arguments(A "" "" "SOURCES;LIBS;DEFINES" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE ${A_DEFINES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  nepho_layer(${name} tests)
+endfunction()
+
+# nepho_add_mutant(<name> OF <program> MUTANT <macro> FILTER <gtest filter> LABELS ... SOURCES ...
+# LIBS ...): the same tests compiled with a planted mistake; they must fail. Counted, and the number
+# is printed at configure time.
+function(nepho_add_mutant name)
+  cmake_parse_arguments(A "" "MUTANT;FILTER" "LABELS;SOURCES;LIBS;DEFINES;ENV" ${ARGN})
+  nepho_add_test_program(${name} SOURCES ${A_SOURCES} LIBS ${A_LIBS}
+    DEFINES ${A_DEFINES} ${A_MUTANT})
+  add_test(NAME mutant.${name} COMMAND ${name} --gtest_filter=${A_FILTER})
+  set_tests_properties(mutant.${name} PROPERTIES WILL_FAIL ON LABELS "${A_LABELS};mutant"
+    ENVIRONMENT "${A_ENV}")
+  set_property(GLOBAL APPEND PROPERTY NEPHO_MUTANTS ${name})
+endfunction()

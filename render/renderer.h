@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bricks/brick_source.h"
+#include "scene/scene.h"
+
+namespace nepho {
+
+// Bricks to light. Knows nothing of where bricks come from, of windows or of picture files.
+
+struct RenderVolume {
+  const BrickSource* source = nullptr;  // outlives the renderer
+  double time_s = 0;
+  Phase phase;
+  glm::dvec3 co_albedo{0.0};
+};
+
+struct RenderRequest {
+  std::vector<RenderVolume> volumes;
+  Camera camera;
+  Sun sun;
+  Sky sky;
+  RenderSettings settings;
+};
+
+// Linear HDR, row 0 at the top: radiance r, g, b (W m-2 sr-1 nm-1) and the view optical depth.
+struct HdrImage {
+  int width = 0, height = 0;
+  std::vector<float> rgb;            // 3 per pixel
+  std::vector<float> optical_depth;  // 1 per pixel
+};
+
+// Each: rms over pixels with optical depth > 0.01 of the luminance difference, over those pixels'
+// mean luminance. Negative: not measured.
+struct ErrorEstimate {
+  double integration = -1, level_of_detail = -1, quantisation = -1, light_model = -1;
+  int probe_pixels = 0;           // on which the first three were measured
+  std::string light_model_basis;  // "table, slabs"
+};
+
+struct PassReport {
+  std::string name;
+  double cpu_s = 0;  // process CPU time
+};
+struct VolumeReport {
+  std::string name;
+  std::uint64_t nodes = 0, bricks = 0, constant_nodes = 0, empty_nodes = 0, sun_tiles = 0;
+  int finest_level_used = 0, finest_level = 0;
+};
+struct RenderReport {
+  std::string device;                        // GL_RENDERER, GL_VERSION
+  std::vector<std::string> shader_switches;  // what the compiled shaders hold
+  std::vector<std::string> left_out;         // what this scene did not need
+  std::vector<PassReport> passes;
+  std::vector<VolumeReport> volumes;
+  std::uint64_t atlas_bytes = 0, sun_bytes = 0, node_bytes = 0, staging_bytes = 0;  // in the budget
+  std::uint64_t image_bytes = 0, source_bytes = 0;                                  // apart from it
+};
+
+struct RenderResult {
+  HdrImage image;
+  ErrorEstimate error;
+  RenderReport report;
+};
+
+// Needs a current OpenGL 4.5 core context. Throws Error where GL refuses or the budget is too small
+// for the roots.
+RenderResult render(const RenderRequest& request);
+
+}  // namespace nepho

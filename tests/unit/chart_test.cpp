@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "bricks/shell_chart.h"
+
+namespace nepho {
+namespace {
+
+using std::numbers::pi;
+
+const ShellChart kEarth(Ellipsoid::wgs84(), -500, 24000);
+const BoxChart kBox(geodetic_to_ecef_m(Ellipsoid::wgs84(), 0.9, 0.2, 500), east_north_up(0.9, 0.2),
+                    {6400, 6400, 3200}, {.x = true, .y = true});
+
+TEST(ShellChart, EquiangularIsOddAndExact) {
+  EXPECT_EQ(equiangular(-1), -1);
+  EXPECT_EQ(equiangular(0), 0);
+  EXPECT_EQ(equiangular(1), 1);
+  for (int i = 1; i < 1024; ++i) {
+    EXPECT_EQ(equiangular(i / 1024.0), -equiangular(-i / 1024.0));
+    EXPECT_LT(equiangular((i - 1) / 1024.0), equiangular(i / 1024.0));
+  }
+}
+
+TEST(ShellChart, TwelveEdgesAndEightCornersAreOneSampleBitForBit) {
+  const Lattice lattice({kSplitXy, kSplitXyz});
+  const Index3 n = lattice.cells(2);
+  std::map<Column, int> shared;
+  for (int root = 0; root < 6; ++root)
+    for (std::uint32_t i = 0; i <= n[0]; ++i)
+      for (std::uint32_t j = 0; j <= n[1]; ++j) {
+        const ColumnNames names = kEarth.names({root, i, j}, n);
+        const Column owner = names.owner();
+        if (names.size() > 1) shared[owner] = names.size();
+        bool has_self = false;
+        for (const Column name : names) {
+          has_self |= name == Column{root, i, j};
+          EXPECT_EQ(kEarth.names(name, n).owner(), owner);
+          // By each name's own root, not through the owner.
+          EXPECT_EQ(kEarth.ecef_m({name.root, lattice.q(2, {name.i, name.j, 5})}),
+                    kEarth.ecef_m({owner.root, lattice.q(2, {owner.i, owner.j, 5})}));
+        }
+        EXPECT_TRUE(has_self);
+        EXPECT_EQ(kEarth.locate(kEarth.ecef_m({root, lattice.q(2, {i, j, 3})})).root, owner.root);
+      }
+  int edges = 0, corners = 0;
+  for (const auto& [owner, count] : shared) ++(count == 3 ? corners : edges);
+  EXPECT_EQ(corners, 8);
+  EXPECT_EQ(edges, 12 * int(n[0] - 1));
+}
+
+TEST(ShellChart, RefusesLatticeWhoseFacesDoNotMeet) {
+  EXPECT_NO_THROW(kEarth.check(Lattice({kSplitXy, kSplitXyz, kSplitZ})));
+  EXPECT_THROW(kEarth.check(Lattice({SplitMask{0b001}, SplitMask{0b010}})), std::invalid_argument);
+}
+
+TEST(Charts, HatsFillTheWorld) {
+  const Ellipsoid wgs84 = Ellipsoid::wgs84();
+  const auto cube = [](double x) { return x * x * x; };
+  const double shell_m3 = 4 * pi / 3 * (wgs84.polar_m / wgs84.equatorial_m) *
+                          (cube(wgs84.equatorial_m + 24000) - cube(wgs84.equatorial_m - 500));
+  const auto hats_m3 = [](const Chart& chart, Index3 n) {
+    double horizontal = 0, vertical = 0;
+    for (int root = 0; root < chart.roots(); ++root)
+      for (std::uint32_t i = 0; i <= n[0]; ++i)
+        for (std::uint32_t j = 0; j <= n[1]; ++j)
+          horizontal += chart.hat_horizontal({root, i, j}, n);
+    for (std::uint32_t k = 0; k <= n[2]; ++k) vertical += chart.hat_vertical(k, n);
+    return horizontal * vertical;
+  };
+  for (const std::uint32_t n : {8u, 16u, 64u}) {
+    EXPECT_NEAR(hats_m3(kEarth, {n, n, n}) / shell_m3, 1, 1e-12);
+    EXPECT_NEAR(hats_m3(kBox, {n, n, n}) / (6400.0 * 6400 * 3200), 1, 1e-12);
+  }
+}
+
+TEST(ShellChart, GeodeticHeightClosedForm) {
+  const Ellipsoid wgs84 = Ellipsoid::wgs84();
+  for (const auto& [height_m, bound_m] :
+       {std::pair{-400.0, 1e-6}, {0.0, 5e-9}, {10e3, 2.1e-4}, {100e3, 0.018}, {400e3, 0.28}}) {
+    double worst_m = 0;
+    for (int i = -90; i <= 90; ++i) {
+      const glm::dvec3 p = geodetic_to_ecef_m(wgs84, i * pi / 180, 0.3, height_m);
+      worst_m = std::max(worst_m, std::abs(geodetic_height_m(wgs84, p) - height_m));
+    }
+    std::printf("measured: geodetic height at %.0f m: %.2e m\n", height_m, worst_m);
+    EXPECT_LE(worst_m, bound_m);
+  }
+  EXPECT_NEAR(geodetic_height_m(Ellipsoid::sphere(6.37e6), {0, 0, 6.37e6 + 1234}), 1234, 2e-9);
+}
+
+// Worst distance, in units of max(1e-9 node, 5 nm), between a sample and the position found for it.
+double worst_round_trip(const Chart& chart, const Lattice& lattice, double root_m, double high_m) {
+  std::mt19937 random(2);
+  const auto below = [&](std::uint32_t end) { return std::uint32_t(random() % end); };
+  double worst = 0;
+  for (int trial = 0; trial < 200000; ++trial) {
+    const int level = int(below(std::uint32_t(lattice.max_level()) + 1));
+    const Index3 nodes = lattice.nodes(level);
+    const NodeKey key(int(below(std::uint32_t(chart.roots()))), level, below(nodes[0]),
+                      below(nodes[1]), below(nodes[2]));
+    const Index3 g = Lattice::global_sample(key, {1 + below(7), 1 + below(7), below(9)});
+    const glm::dvec3 q = lattice.q(level, g);
+    const RootPosition found = chart.locate(chart.ecef_m({key.root(), q}));
+    EXPECT_EQ(found.root, key.root());
+    const NodeKey again = lattice.node_at(found.root, found.q, level);
+    EXPECT_EQ(again.i(), key.i());
+    EXPECT_EQ(again.j(), key.j());
+    const double width_m = root_m / nodes[0], height_m = high_m / nodes[2];
+    const auto miss = [&](double dq, double extent_m, double node_m) {
+      return std::abs(dq) * extent_m / std::max(1e-9 * node_m, 5e-9);
+    };
+    worst =
+        std::max({worst, miss(found.q.x - q.x, root_m, width_m),
+                  miss(found.q.y - q.y, root_m, width_m), miss(found.q.z - q.z, high_m, height_m)});
+  }
+  return worst;
+}
+
+TEST(Charts, KeyToPositionAndBack) {
+  std::vector<SplitMask> masks(12, kSplitXy);
+  masks.insert(masks.end(), 8, kSplitXyz);
+  const double shell =
+      worst_round_trip(kEarth, Lattice(masks), pi / 2 * 6378137.0, kEarth.thickness_m());
+  const double box =
+      worst_round_trip(kBox, Lattice(std::vector<SplitMask>(10, kSplitXyz)), 6400, 3200);
+  std::printf("measured: round trip / max(1e-9 node, 5 nm): shell %.3f, box %.3f\n", shell, box);
+  EXPECT_LE(shell, 1);
+  EXPECT_LE(box, 1);
+}
+
+TEST(BoxChart, PeriodicEndsAreOneSample) {
+  const Index3 n = {16, 16, 8};
+  EXPECT_EQ(kBox.names({0, 16, 16}, n).size(), 4);
+  EXPECT_EQ(kBox.names({0, 16, 16}, n).owner(), (Column{0, 0, 0}));
+  EXPECT_EQ(kBox.names({0, 3, 16}, n).owner(), (Column{0, 3, 0}));
+  EXPECT_EQ(kBox.names({0, 3, 5}, n).size(), 1);
+  const Lattice lattice({kSplitXy});
+  EXPECT_EQ(sample_ecef_m(kBox, lattice, 0, 1, {16, 4, 2}),
+            sample_ecef_m(kBox, lattice, 0, 1, {0, 4, 2}));
+  const RootPosition wrapped = kBox.locate(kBox.ecef_m({0, {1.25, -0.25, 0.5}}));
+  EXPECT_NEAR(wrapped.q.x, 0.25, 1e-12);
+  EXPECT_NEAR(wrapped.q.y, 0.75, 1e-12);
+}
+
+}  // namespace
+}  // namespace nepho
