@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bricks/brick_source.h"
+#include "renderer.h"
+
+namespace nepho {
+
+// The part of each volume's tree that a picture needs: refined for a view, under one budget, in
+// total order (priority, then volume, then key), so that it repeats for any number of threads.
+
+enum class NodeKind : std::uint8_t { kInner, kEmpty, kConstant, kBrick };
+
+struct TreeNode {
+  NodeKey key;
+  NodeKind kind = NodeKind::kEmpty;
+  std::uint32_t first_child = 0;  // kInner: index of the first of its contiguous children, which
+                                  // are all present, in octant order (ascending octant bits)
+  std::uint32_t brick = 0;        // kBrick: index into bricks
+  std::uint32_t lit = 0;          // kConstant, kBrick: index of its sun tile, in key order
+  float constant_per_m = 0;       // kConstant
+  float majorant_per_m = 0;       // bound of this node and below
+  float error_bound_per_m = 0;
+  float unresolved_variance_per_m2 = 0;
+};
+
+struct LeafBrick {
+  NodeKey key;
+  std::array<std::uint16_t, 729> codes;
+  float scale = 0, offset = 0;
+  double max_abs_error = 0;
+};
+
+struct VolumeTree {
+  const BrickSource* source = nullptr;
+  double time_s = 0;
+  std::vector<TreeNode> nodes;    // the chart's roots first
+  std::vector<LeafBrick> bricks;  // in key order
+  std::uint32_t lit_nodes = 0;
+  int finest_level_used = 0;
+};
+
+struct Forest {
+  std::vector<VolumeTree> volumes;
+  bool budget_bound = false;  // refinement stopped for memory, not because it was done
+};
+
+// What a volume costs on the GPU; refinement keeps the sum under the budget.
+struct TileCost {
+  std::uint64_t node_bytes = 16, brick_bytes = 0, sun_bytes = 0, fixed_bytes = 0;
+  // Whole textures count: sides are powers of two, grown one at a time.
+  std::uint64_t (*total)(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit) = nullptr;
+};
+
+struct Refinement {
+  Camera camera;
+  RenderSettings settings;  // size, fov, pixels_per_voxel, max_level, budget_mib, tolerance
+  TileCost cost;
+};
+
+// Reads summaries and bricks in parallel (TBB). Throws Error where the budget does not hold the
+// roots, or a source fails (its own text).
+Forest build_forest(std::span<const RenderVolume> volumes, const Refinement& refinement);
+
+// The leaf that holds a cell of the finest lattice.
+const TreeNode& leaf_at(const VolumeTree& tree, int root, const Index3& finest_cell);
+
+}  // namespace nepho
