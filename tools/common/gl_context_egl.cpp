@@ -2,7 +2,6 @@
 // eglGetDisplay(EGL_DEFAULT_DISPLAY) is not tried: it needs a window system.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <epoxy/gl.h>
 
 #include <algorithm>
 #include <cstring>
@@ -25,9 +24,15 @@ class EglContext final : public GlContext {
  public:
   EglContext(EGLDisplay display, EGLContext context, std::string way)
       : display_(display), context_(context) {
-    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
-    text_ = way + ", " + (renderer ? renderer : "?") + ", OpenGL " + (version ? version : "?");
+    // By hand: epoxy's headers and EGL's own do not go together in one file.
+    const auto get_string =
+        reinterpret_cast<const unsigned char* (*)(unsigned)>(eglGetProcAddress("glGetString"));
+    constexpr unsigned kRenderer = 0x1F01, kVersion = 0x1F02;
+    const auto text = [&](unsigned name) {
+      const auto* value = get_string ? get_string(name) : nullptr;
+      return std::string(value ? reinterpret_cast<const char*>(value) : "?");
+    };
+    text_ = way + ", " + text(kRenderer) + ", OpenGL " + text(kVersion);
   }
   ~EglContext() override {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
