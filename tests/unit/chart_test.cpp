@@ -4,7 +4,9 @@
 #include <numbers>
 #include <random>
 
+#include "bricks/box_chart.h"
 #include "bricks/shell_chart.h"
+#include "frames.h"
 
 namespace nepho {
 namespace {
@@ -12,8 +14,9 @@ namespace {
 using std::numbers::pi;
 
 const ShellChart kEarth(Ellipsoid::wgs84(), -500, 24000);
-const BoxChart kBox(geodetic_to_ecef_m(Ellipsoid::wgs84(), 0.9, 0.2, 500), east_north_up(0.9, 0.2),
-                    {6400, 6400, 3200}, {.x = true, .y = true});
+const BoxChart kBox(geodetic_to_ecef_m(Ellipsoid::wgs84(), 0.9, 0.2, 500),
+                    test::scaled_columns(test::east_north_up(0.9, 0.2), {6400, 6400, 3200}),
+                    {.x = true, .y = true});
 
 TEST(ShellChart, EquiangularIsOddAndExact) {
   EXPECT_EQ(equiangular(-1), -1);
