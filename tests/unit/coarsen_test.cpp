@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 
+#include "accuracy_report.h"
 #include "analytic_field.h"
 #include "bricks/box_chart.h"
 #include "bricks/shell_chart.h"
@@ -66,8 +67,7 @@ TEST(Coarsen, ConservesEachLevelWithoutSeams) {
   for (const Case& c : cases()) {
     const Pyramid pyramid = build_pyramid(c.chart, c.lattice, c.field, kMean);
     const double drift = worst_drift(c.chart, pyramid);
-    std::printf("measured: %-20s drift of sum c V per level %.1e, seams %zu\n", c.name.c_str(),
-                drift, pyramid.seams);
+    report_accuracy("coarsening", "drift of sum c V per level: " + c.name, drift, 1e-12, "1");
     EXPECT_LE(drift, 1e-12) << c.name;
     EXPECT_EQ(pyramid.seams, 0u) << c.name;
   }
@@ -160,10 +160,12 @@ TEST(Coarsen, QuantisedLevelsStillConserve) {
       pyramid.levels[std::size_t(level)] = decoded;
     }
     const double drift = worst_drift(c.chart, pyramid);
-    std::printf(
-        "measured: %-20s decoded: drift %.1e; %.0f %% of shared samples differ, by at most "
-        "%.2f of the sum of both bounds\n",
-        c.name.c_str(), drift, 100.0 * double(unequal) / double(shared), worst_step_gap);
+    std::printf("measured: %s: %.0f %% of shared samples differ when decoded\n", c.name.c_str(),
+                100.0 * double(unequal) / double(shared));
+    report_accuracy("coarsening", "drift of sum c V per decoded level: " + c.name, drift, 1e-5,
+                    "1");
+    report_accuracy("coarsening", "decoded gap at shared faces / both max_abs_error: " + c.name,
+                    worst_step_gap, 1, "1");
     EXPECT_LE(drift, 1e-5) << c.name;
     EXPECT_LE(worst_step_gap, 1) << c.name;
   }
