@@ -3,6 +3,9 @@
 # JOBS = parallel compilers (default: cores, but no more than 1.5 GiB of memory each).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+if [ -n "${NEPHO_REAL_DATA:-}" ]; then  # before the change of folder: it may be relative
+  NEPHO_REAL_DATA=$(cd "$NEPHO_REAL_DATA" && pwd)
+fi
 cd "$root"
 
 default_jobs() {
@@ -13,10 +16,6 @@ default_jobs() {
   echo $((cores < by_memory ? cores : by_memory))
 }
 
-if [ -n "${NEPHO_REAL_DATA:-}" ] && ! NEPHO_REAL_DATA=$(cd "$NEPHO_REAL_DATA" && pwd); then
-  echo "build: NEPHO_REAL_DATA must name a folder" >&2
-  exit 1
-fi
 tools/install.sh
 
 start_s=$SECONDS

@@ -35,20 +35,21 @@ fi
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-# apt's machine-readable state on descriptor 3 becomes a line at each tenth of the way.
+# apt's machine-readable state on descriptor 3 becomes a line at each tenth of the way. The shell
+# inside opens it: sudo passes none above 2, and apt would close 1 to the packages' own scripts.
 apt_quietly() {
-  if ! { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 \
-      -o APT::Status-Fd=1 "$@" 2>>"$log" | tee -a "$log" | awk -F: '
+  if ! "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LOG="$log" sh -c \
+      'exec apt-get -qq -o Dpkg::Use-Pty=0 -o APT::Status-Fd=3 "$@" 3>&1 >>"$LOG" 2>&1 </dev/null' \
+      apt-get "$@" | awk -F: '
         $1 == "dlstatus" || $1 == "pmstatus" {
           tenth = int($3 / 10)
-          if ($1 != phase || tenth != last) {
-            printf "install: %s %3d %%\n", $1 == "dlstatus" ? "download" : "unpack  ", tenth * 10
-            fflush()
-          }
+          if ($1 == phase && tenth <= last) next
+          printf "install: %s %3d %%\n", $1 == "dlstatus" ? "download" : "unpack  ", tenth * 10
+          fflush()
           phase = $1; last = tenth
-        }'; }; then
+        }'; then
     echo "install: apt-get $1 failed:" >&2
-    grep -Ev '^(dl|pm)status:' "$log" | tail -n 20 >&2
+    tail -n 20 "$log" >&2
     exit 1
   fi
 }
@@ -56,7 +57,8 @@ apt_quietly() {
 count=$(echo "$missing" | wc -l)
 start_s=$SECONDS
 echo "install: $count packages are missing:" $missing
-apt_quietly update
+echo "install: asking the mirror for its lists"
+apt_quietly update >/dev/null
 apt_quietly install -y --no-install-recommends $missing
 
 still=$(missing_packages)

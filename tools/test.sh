@@ -3,9 +3,9 @@
 # NEPHO_REAL_DATA = a folder of real files adds the tests that read them; JOBS = parallel jobs.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-cd "$root"
 start_s=$SECONDS
-tools/build.sh
+"$root/tools/build.sh"
+cd "$root"
 
 mutants=$(ctest --test-dir build/release -N -L '^mutant$' | sed -n 's/^Total Tests: //p')
 if [ -n "${NEPHO_REAL_DATA:-}" ]; then

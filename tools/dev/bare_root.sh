@@ -34,7 +34,7 @@ fi
 mounted=()
 unmount_all() {
   local at
-  for at in "${mounted[@]}"; do umount "$at" || true; done
+  for at in "${mounted[@]}"; do umount "$at" || umount --lazy "$at"; done
 }
 trap unmount_all EXIT
 mount_in() {  # mount_in PATH MOUNT_ARGUMENTS...
@@ -44,8 +44,7 @@ mount_in() {  # mount_in PATH MOUNT_ARGUMENTS...
   mounted=("$inside$1" "${mounted[@]}")
 }
 mount_in /proc -t proc proc
-mount_in /sys --rbind -o ro /sys
-mount_in /dev --rbind /dev
+mount_in /dev --bind /dev
 if [ -n "${REAL_DATA:-}" ]; then
   mount_in /real_data --bind -o ro "$REAL_DATA"
 fi
