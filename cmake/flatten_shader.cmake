@@ -1,5 +1,6 @@
 # cmake -DNAME= -DSHADER= -DINCLUDE_DIRS=a;b -DOUT= -P flatten_shader.cmake
 # Each file is included once. Works on raw lines: no list may ever hold shader text (; and [).
+cmake_minimum_required(VERSION 3.25)
 set_property(GLOBAL PROPERTY files "")
 set_property(GLOBAL PROPERTY text "")
 
