@@ -43,7 +43,7 @@ const Lattice kLongLattice({0b001, 0b101, kSplitXyz});
 
 double shell_cloud(glm::dvec3 ecef) {
   const double height_m = length(ecef) - 6.36e6;
-  return cloud(16 / length(ecef) * ecef + glm::dvec3{0, 0, height_m / 4000});
+  return cloud(16.0 / length(ecef) * ecef + glm::dvec3{0, 0, height_m / 4000});
 }
 double box_cloud(glm::dvec3 p) {
   return cloud(1 / 300. * p);
