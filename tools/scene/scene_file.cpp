@@ -39,7 +39,7 @@ glm::dvec3 read_direction(const ObjectReader& in, std::string_view field) {
   if (!(length > 0) || !std::isfinite(length))
     throw Error({"not a direction", in.where(field), "a vector of some length", "", ""});
   // Written ones have length 1 already: dividing again would change their last bit.
-  return std::abs(length - 1) < 4e-16 ? v : v / length;
+  return std::abs(length - 1) < 1e-12 ? v : v / length;
 }
 
 Phase read_phase(const ObjectReader& in) {
