@@ -13,6 +13,10 @@ namespace nepho {
 // The part of each volume's tree that a picture needs: refined for a view, under one budget, in
 // total order (priority, then volume, then key), so that it repeats for any number of threads.
 
+// Share of the tolerance that one node's optical depth may be off by before it is split. A ray
+// crosses a handful of nodes with errors of either sign, and the bound is a supremum.
+inline constexpr double kErrorShare = 1.0 / 16;
+
 enum class NodeKind : std::uint8_t { kInner, kEmpty, kConstant, kBrick };
 
 struct TreeNode {
@@ -46,14 +50,21 @@ struct VolumeTree {
 
 struct Forest {
   std::vector<VolumeTree> volumes;
-  bool budget_bound = false;  // refinement stopped for memory, not because it was done
+  bool budget_bound = false;     // refinement stopped for memory, not because it was done
+  std::uint64_t cost_bytes = 0;  // by Refinement::cost, never above the budget
 };
 
-// What a volume costs on the GPU; refinement keeps the sum under the budget.
+// What one volume costs on the GPU; refinement keeps the sum over volumes under the budget.
 struct TileCost {
   std::uint64_t node_bytes = 16, brick_bytes = 0, sun_bytes = 0, fixed_bytes = 0;
-  // Whole textures count: sides are powers of two, grown one at a time.
+  // Whole textures count: sides are powers of two, grown one at a time. Null: the linear sum of the
+  // four numbers above.
   std::uint64_t (*total)(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit) = nullptr;
+
+  std::uint64_t bytes(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit) const {
+    if (total) return total(nodes, bricks, lit);
+    return fixed_bytes + nodes * node_bytes + bricks * brick_bytes + lit * sun_bytes;
+  }
 };
 
 struct Refinement {
@@ -62,8 +73,13 @@ struct Refinement {
   TileCost cost;
 };
 
-// Reads summaries and bricks in parallel (TBB). Throws Error where the budget does not hold the
-// roots, or a source fails (its own text).
+// A node is split while its voxels (on the axes that the split halves) are larger on the screen
+// than settings.pixels_per_voxel, and the split removes error: error bound * node length above
+// tolerance * kErrorShare. Priority = voxel pixels * (1 - exp(-error bound * length)). Off-screen
+// nodes shadow what is seen: they stay, at a quarter of the resolution. The sequence of splits does
+// not depend on the budget, which only ends it: a larger budget never gives a coarser node.
+// Reads summaries and bricks in parallel (TBB), each brick once. Throws Error where the budget does
+// not hold the roots, or a source fails (its own text).
 Forest build_forest(std::span<const RenderVolume> volumes, const Refinement& refinement);
 
 // The leaf that holds a cell of the finest lattice.

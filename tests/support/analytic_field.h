@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "glm/glm.hpp"
+#include <glm/glm.hpp>
 
 namespace nepho::test {
 
@@ -33,14 +33,15 @@ inline double value_noise(glm::dvec3 p) {
 // Thresholded fractal noise: mostly zero, with sharp edges at every scale.
 inline double cloud(glm::dvec3 p) {
   double sum = 0, amplitude = 0.5;
-  for (int octave = 0; octave < 4; ++octave, amplitude *= 0.5, p = 2 * p)
+  for (int octave = 0; octave < 4; ++octave, amplitude *= 0.5, p = 2.0 * p)
     sum += amplitude * value_noise(p);
   return 0.05 * std::max(0.0, sum - 0.52);
 }
 
 // A few smooth puffs around the points of a cube, on the scale of 1.
 inline double puffs(glm::dvec3 p) {
-  const glm::dvec3 f = p - glm::dvec3{std::floor(p.x) + 0.5, std::floor(p.y) + 0.5, std::floor(p.z) + 0.5};
+  const glm::dvec3 f =
+      p - glm::dvec3{std::floor(p.x) + 0.5, std::floor(p.y) + 0.5, std::floor(p.z) + 0.5};
   return 0.02 * std::exp(-12 * dot(f, f));
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "glm/glm.hpp"
+#include <glm/glm.hpp>
 
 namespace nepho::test {
 

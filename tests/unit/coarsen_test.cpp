@@ -5,9 +5,13 @@
 #include <functional>
 #include <numbers>
 
+#include "accuracy_report.h"
 #include "analytic_field.h"
+#include "bricks/box_chart.h"
+#include "bricks/shell_chart.h"
+#include "codes.h"
 #include "dense_levels.h"
-#include "bricks/quantise.h"
+#include "frames.h"
 
 namespace nepho::test {
 namespace {
@@ -21,23 +25,25 @@ struct Case {
 
 const ShellChart kEarth(Ellipsoid::wgs84(), 0, 16000);
 const glm::dvec3 kOrigin = geodetic_to_ecef_m(Ellipsoid::wgs84(), 0.5, 0.2, 500);
-const BoxChart kOpenBox(kOrigin, east_north_up(0.5, 0.2), {6400, 6400, 3200});
-const BoxChart kPeriodicBox(kOrigin, east_north_up(0.5, 0.2), {6400, 6400, 3200}, {true, true});
+const glm::dmat3 kEdges = scaled_columns(east_north_up(0.5, 0.2), {6400, 6400, 3200});
+const BoxChart kOpenBox(kOrigin, kEdges);
+const BoxChart kPeriodicBox(kOrigin, kEdges, {true, true});
 const Lattice kShellLattice({kSplitXy, kSplitXy, kSplitXyz, kSplitZ});
 const Lattice kBoxLattice({kSplitXy, kSplitXyz, kSplitXyz});
 
 // Features of 400 km across and 4 km up: value noise of direction, shifted with height.
 double shell_cloud(glm::dvec3 ecef) {
   const double height_m = length(ecef) - 6.36e6;
-  return cloud(16 / length(ecef) * ecef + glm::dvec3{0, 0, height_m / 4000});
+  return cloud(16 / glm::length(ecef) * ecef + glm::dvec3{0, 0, height_m / 4000});
 }
 
 std::vector<Case> cases() {
-  return {{"shell, noise", kEarth, kShellLattice, shell_cloud},
-          {"shell, puffs", kEarth, kShellLattice, [](glm::dvec3 p) { return puffs(1 / 2.5e6 * p); }},
-          {"open box, noise", kOpenBox, kBoxLattice, [](glm::dvec3 p) { return cloud(1 / 300. * p); }},
-          {"periodic box, noise", kPeriodicBox, kBoxLattice,
-           [](glm::dvec3 p) { return cloud(1 / 300. * p); }}};
+  return {
+      {"shell, noise", kEarth, kShellLattice, shell_cloud},
+      {"shell, puffs", kEarth, kShellLattice, [](glm::dvec3 p) { return puffs(1 / 2.5e6 * p); }},
+      {"open box, noise", kOpenBox, kBoxLattice, [](glm::dvec3 p) { return cloud(1 / 300. * p); }},
+      {"periodic box, noise", kPeriodicBox, kBoxLattice,
+       [](glm::dvec3 p) { return cloud(1 / 300. * p); }}};
 }
 
 double worst_drift(const Chart& chart, const Pyramid& pyramid) {
@@ -61,8 +67,7 @@ TEST(Coarsen, ConservesEachLevelWithoutSeams) {
   for (const Case& c : cases()) {
     const Pyramid pyramid = build_pyramid(c.chart, c.lattice, c.field, kMean);
     const double drift = worst_drift(c.chart, pyramid);
-    std::printf("measured: %-20s drift of sum c V per level %.1e, seams %zu\n", c.name.c_str(),
-                drift, pyramid.seams);
+    report_accuracy("coarsening", "drift of sum c V per level: " + c.name, drift, 1e-12, "1");
     EXPECT_LE(drift, 1e-12) << c.name;
     EXPECT_EQ(pyramid.seams, 0u) << c.name;
   }
@@ -79,7 +84,9 @@ TEST(Coarsen, ConstantStaysConstant) {
 // A neighbour taken from the wrong place would be off by a spacing or more. At cube edges the hat
 // itself leans: grid lines meet the edge at an angle, its centroid lies 0.12 spacings along it.
 TEST(Coarsen, SmoothFieldIsFollowedAcrossEdges) {
-  const auto smooth = [](glm::dvec3 p) { return 2 + dot(1 / length(p) * p, {0.5, -0.3, 0.7}); };
+  const auto smooth = [](glm::dvec3 p) {
+    return 2 + dot(1 / length(p) * p, glm::dvec3{0.5, -0.3, 0.7});
+  };
   const Pyramid pyramid = build_pyramid(kEarth, kShellLattice, smooth, kMean);
   double inside = 0, edges = 0;
   const int level = 2;
@@ -136,10 +143,10 @@ TEST(Coarsen, QuantisedLevelsStillConserve) {
     for (int level = 0; level <= c.lattice.max_level(); ++level) {
       DenseLevel decoded(c.chart, c.lattice, level), step(c.chart, c.lattice, level);
       for_each_node(c.chart, c.lattice, level, [&](NodeKey key) {
-        const Codes codes = quantise(brick_of(pyramid.levels[std::size_t(level)], key));
+        const Codes codes = code_values(brick_of(pyramid.levels[std::size_t(level)], key));
         for_each_brick_sample(key, [&](std::size_t at, Column column, std::uint32_t k) {
           double& known = decoded.at(column, k);
-          const double now = codes.decode(at), err = max_abs_error(codes);
+          const double now = codes.decode(at), err = codes.q.max_abs_error;
           shared += !std::isnan(known);
           if (!std::isnan(known) && now != known) {
             ++unequal;
@@ -153,10 +160,12 @@ TEST(Coarsen, QuantisedLevelsStillConserve) {
       pyramid.levels[std::size_t(level)] = decoded;
     }
     const double drift = worst_drift(c.chart, pyramid);
-    std::printf(
-        "measured: %-20s decoded: drift %.1e; %.0f %% of shared samples differ, by at most "
-        "%.2f of the sum of both bounds\n",
-        c.name.c_str(), drift, 100.0 * double(unequal) / double(shared), worst_step_gap);
+    std::printf("measured: %s: %.0f %% of shared samples differ when decoded\n", c.name.c_str(),
+                100.0 * double(unequal) / double(shared));
+    report_accuracy("coarsening", "drift of sum c V per decoded level: " + c.name, drift, 1e-5,
+                    "1");
+    report_accuracy("coarsening", "decoded gap at shared faces / both max_abs_error: " + c.name,
+                    worst_step_gap, 1, "1");
     EXPECT_LE(drift, 1e-5) << c.name;
     EXPECT_LE(worst_step_gap, 1) << c.name;
   }
@@ -169,7 +178,7 @@ TEST(Summary, BoundsDecodedSamplesOfNodeAndDescendants) {
     const Pyramid grown = build_pyramid(c.chart, c.lattice, c.field, kMax);
     std::size_t nodes = 0, broken = 0, naive_broken = 0, wide = 0, full_of_nothing = 0;
     const std::function<float(NodeKey)> decoded_max = [&](NodeKey key) {
-      const Codes codes = quantise(brick_of(mean.levels[std::size_t(key.level())], key));
+      const Codes codes = code_values(brick_of(mean.levels[std::size_t(key.level())], key));
       float truth = 0, own_leaves = 0;
       for (std::size_t at = 0; at < codes.code.size(); ++at)
         truth = std::max(truth, codes.decode(at));

@@ -1,0 +1,35 @@
+#version 450
+// Visibility of the sky (up, mean of four level directions, down) at every second sample; the fill
+// pass interpolates the rest: it varies over mean free paths, not voxels.
+layout(local_size_x = 64) in;
+layout(binding = 0) uniform sampler3D atlas;
+layout(binding = 0, rgba16f) uniform image3D light_image;
+#define LIGHT_ATLAS_SIZE imageSize(light_image)
+#include "head.glsl"
+#include "walk.glsl"
+#include "march.glsl"
+#include "lit_sample.glsl"
+
+float visible(dvec3 direction) {
+  ray_direction = direction;
+  float tau = optical_depth_ahead();
+#ifdef NEPHO_SINGLE
+  return exp(-tau);
+#else
+  return sky_visibility(tau);
+#endif
+}
+
+void main() {
+  int at = int(gl_GlobalInvocationID.x) + first_tile * 125, tile = at / 125, s = at % 125;
+  if (tile >= lit.length()) return;
+  ivec3 sample_index = 2 * ivec3(s % 5, s / 5 % 5, s / 25);
+  ray_start = lit_world(tile, sample_index);
+  dvec3 axis[3];
+  for (int a = 0; a < 3; ++a)
+    axis[a] = dvec3(frame.sky_axes[3 * a], frame.sky_axes[3 * a + 1], frame.sky_axes[3 * a + 2]);
+  float side = visible(axis[1]) + visible(-axis[1]) + visible(axis[2]) + visible(-axis[2]);
+  ivec3 texel = lit_texel(tile, sample_index);
+  float tau = imageLoad(light_image, texel).r;
+  imageStore(light_image, texel, vec4(tau, visible(axis[0]), 0.25 * side, visible(-axis[0])));
+}

@@ -1,0 +1,20 @@
+#version 450
+// Optical depth towards the sun, through all volumes, at each sample of each light tile.
+layout(local_size_x = 64) in;
+layout(binding = 0) uniform sampler3D atlas;
+layout(binding = 0, NEPHO_LIGHT_FORMAT) uniform writeonly image3D light_image;
+#define LIGHT_ATLAS_SIZE imageSize(light_image)
+#include "head.glsl"
+#include "walk.glsl"
+#include "march.glsl"
+#include "lit_sample.glsl"
+
+void main() {
+  int at = int(gl_GlobalInvocationID.x) + first_tile * 729, tile = at / 729, s = at % 729;
+  if (tile >= lit.length()) return;
+  ivec3 sample_index = ivec3(s % 9, s / 9 % 9, s / 81);
+  ray_start = lit_world(tile, sample_index);
+  ray_direction = vec_of(frame.to_sun);
+  float tau = optical_depth_ahead();
+  imageStore(light_image, lit_texel(tile, sample_index), vec4(tau, 0.0, 0.0, 0.0));
+}

@@ -1,0 +1,62 @@
+// In-scattered light per unit of optical depth, from the light tiles. One sun, octaves or single
+// scattering, and the sky seen along six directions (interim models: docs/accuracy.md).
+
+// Phase function towards the eye times a^n, per octave: the sun is distant, so once per ray.
+vec3 octave_phase[NEPHO_VOLUMES * NEPHO_OCTAVES];
+
+layout(std430, binding = 4) readonly buffer PhaseBuffer { float phase_log[]; };  // rows of 1024 x 3
+
+vec3 table_phase(int row, float one_minus_cos) {
+  float at = phase_table_coordinate(one_minus_cos) * 1023.0;
+  int i = clamp(int(at), 0, 1022);
+  float f = at - float(i);
+  vec3 value;
+  for (int c = 0; c < 3; ++c) {
+    float a = phase_log[(row * 1024 + i) * 3 + c], b = phase_log[(row * 1024 + i + 1) * 3 + c];
+    value[c] = exp(a + (b - a) * f);
+  }
+  return value;
+}
+
+void begin_lights() {
+  vec3 apart = vec3(vec_of(frame.to_sun) - ray_direction);
+  float one_minus_cos = 0.5 * dot(apart, apart);
+  for (int v = 0; v < NEPHO_VOLUMES; ++v) {
+    octave_phase[v * NEPHO_OCTAVES] = table_phase(volumes[v].phase_row, one_minus_cos);
+    for (int n = 1; n < NEPHO_OCTAVES; ++n)
+      octave_phase[v * NEPHO_OCTAVES + n] =
+          vec3(octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[v].asymmetry)));
+  }
+}
+
+// Radiance of one volume at t_m: J / extinction, W m-2 sr-1 nm-1.
+vec3 source_at(int volume, float t_m) {
+  vec3 at = walks[volume].light_tile + leaf_cells_at(volume, walks[volume], t_m);
+  vec4 light = textureLod(light_atlas, (at + 0.5) / vec3(textureSize(light_atlas, 0)), 0.0);
+  vec3 scattered = vec3(0.0);
+  for (int n = 0; n < NEPHO_OCTAVES; ++n)
+    scattered += octave_phase[volume * NEPHO_OCTAVES + n] * octave_transmittance(n, light.r);
+  vec3 radiance = scattered * vec_of(frame.sun_irradiance);
+#ifdef NEPHO_SKY_LIGHT
+  for (int c = 0; c < 3; ++c)
+    radiance[c] += sky_source(light.g, light.b, light.a, frame.zenith[c], frame.horizon[c], frame.below[c]);
+#endif
+#ifdef NEPHO_ABSORPTION
+  radiance *= vec_of(volumes[volume].albedo);
+#endif
+  return radiance;
+}
+
+// Source of all volumes at t_m, weighted by their extinctions; where there is none, the mean of
+// those that a neighbouring sample could bring in: finite, and continuous as extinction goes to 0.
+vec3 total_source_at(float t_m) {
+  vec3 sum = vec3(0.0);
+  float weight = 0.0;
+  for (int v = 0; v < NEPHO_VOLUMES; ++v) {
+    if (walks[v].kind != NODE_BRICK && walks[v].kind != NODE_CONSTANT) continue;
+    float k = max(extinction_at(v, t_m), 1e-30);
+    sum += k * source_at(v, t_m);
+    weight += k;
+  }
+  return weight > 0.0 ? sum / weight : vec3(0.0);
+}

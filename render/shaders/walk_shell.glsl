@@ -1,0 +1,223 @@
+// The spherical shell in scaled space (z stretched by a/b): walls of u and v are planes through the
+// centre, met in the plane across their axis; walls of z are spheres. A straight ray turns about
+// each axis in one sense, so u and v each have one wall ahead; z falls until the perigee.
+
+const int FACE_U[6] = int[](1, 1, 0, 0, 0, 0);      // axis of u
+const float FACE_U_SIGN[6] = float[](1.0, -1.0, -1.0, 1.0, 1.0, 1.0);
+const int FACE_V[6] = int[](2, 2, 2, 2, 1, 1);
+const float FACE_V_SIGN[6] = float[](1.0, 1.0, 1.0, 1.0, 1.0, -1.0);
+
+float face_sign(int face) { return (face & 1) == 0 ? 1.0 : -1.0; }
+
+// Taylor at a quarter of the angle (|angle| <= pi, rest < 5e-17), doubled twice: GLSL has no fp64
+// trigonometry.
+void sin_cos_fp64(double angle, out double s, out double c) {
+  double x = 0.25LF * angle, z = x * x;
+  s = x * (1.0LF + z * (-1.0LF / 6.0LF + z * (1.0LF / 120.0LF + z * (-1.0LF / 5040.0LF +
+      z * (1.0LF / 362880.0LF + z * (-1.0LF / 39916800.0LF + z * (1.0LF / 6227020800.0LF +
+      z * (-1.0LF / 1307674368000.0LF))))))));
+  c = 1.0LF + z * (-0.5LF + z * (1.0LF / 24.0LF + z * (-1.0LF / 720.0LF + z * (1.0LF / 40320.0LF +
+      z * (-1.0LF / 3628800.0LF + z * (1.0LF / 479001600.0LF +
+      z * (-1.0LF / 87178291200.0LF + z * (1.0LF / 20922789888000.0LF))))))));
+  for (int doubling = 0; doubling < 2; ++doubling) {
+    double twice = 2.0LF * s * c;
+    c = 1.0LF - 2.0LF * s * s;
+    s = twice;
+  }
+}
+
+// The float result, turned back in fp64: what is left is too small for a third order.
+double atan_fp64(double y, double x) {
+  double guess = double(atan(float(y / max(abs(x), abs(y))), float(x / max(abs(x), abs(y)))));
+  double s, c;
+  sin_cos_fp64(guess, s, c);
+  double rest = (y * c - x * s) / (x * c + y * s);
+  return guess + rest * (1.0LF - rest * rest / 3.0LF);
+}
+
+dvec3 to_scaled(int volume, dvec3 p) { return dvec3(p.x, p.y, p.z * volumes[volume].z_scale); }
+
+// Unit direction in scaled space, and the scaled metres in a metre.
+dvec3 scaled_direction(int volume, out double stretch) {
+  dvec3 d = to_scaled(volume, ray_direction);
+  stretch = sqrt(dot(d, d));
+  return d / stretch;
+}
+
+dvec3 scaled_point(int volume, double t_m) {
+  return to_scaled(volume, ray_start + ray_direction * t_m);
+}
+
+int shell_face_at(int volume, Walk w, float t_m) {
+  dvec3 p = scaled_point(volume, double(t_m));
+  dvec3 a = abs(p);
+  int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+  return 2 * axis + (p[axis] < 0.0LF ? 1 : 0);
+}
+
+void face_axis(int volume, inout Walk w, int slot, double normal, double side, double d_normal,
+               double d_side) {
+  double radius = sqrt(normal * normal + side * side);
+  double angle = atan_fp64(side, normal);
+  double cell = angle / volumes[volume].cell_rad + 0.5LF * double(volumes[volume].cells[0]);
+  double nearest = floor(cell + 0.5LF);
+  w.index[slot] = int(nearest);
+  w.rest[slot] = float(cell - nearest);
+  w.radius[slot] = float(radius);
+  w.radial[slot] = float((normal * d_normal + side * d_side) / radius);
+  w.slope[slot] = float((normal * d_side - side * d_normal) / radius);
+}
+
+// The frame of one face about the walk's anchor.
+void shell_set_face(int volume, inout Walk w, int face) {
+  double stretch;
+  dvec3 d = scaled_direction(volume, stretch);
+  dvec3 p = scaled_point(volume, double(w.anchor_m));
+  int axis = face >> 1;
+  double sign_n = double(face_sign(face));
+  double normal = sign_n * p[axis], d_normal = sign_n * d[axis];
+  double su = double(FACE_U_SIGN[face]), sv = double(FACE_V_SIGN[face]);
+  w.root = face;
+  face_axis(volume, w, 0, normal, su * p[FACE_U[face]], d_normal, su * d[FACE_U[face]]);
+  face_axis(volume, w, 1, normal, sv * p[FACE_V[face]], d_normal, sv * d[FACE_V[face]]);
+}
+
+// Distance to a sphere about the centre, fp64; negative where it is missed or behind.
+double sphere_entry(double r0, double mu, double radius, bool far) {
+  double b = r0 * mu, c = (r0 - radius) * (r0 + radius), discriminant = b * b - c;
+  if (discriminant < 0.0LF) return -1.0LF;
+  double q = -(b + (b < 0.0LF ? -1.0LF : 1.0LF) * sqrt(discriminant));
+  double other = q == 0.0LF ? 0.0LF : c / q;
+  return far ? max(q, other) : min(q, other);
+}
+
+Walk shell_begin(int volume) {
+  Walk w;
+  w.kind = GONE;
+  w.leave_m = FAR;
+  w.leave_axis = -1;
+  w.wraps = 0;
+  w.root = 0;
+  VolumeData v = volumes[volume];
+  double stretch;
+  dvec3 d = scaled_direction(volume, stretch);
+  dvec3 p = scaled_point(volume, 0.0LF);
+  double r0 = sqrt(dot(p, p)), mu = dot(p, d) / r0;
+  double height = r0 - v.radius_m, thickness = v.cell_height_m * double(v.cells[2]);
+  double slack = 1e-9LF * thickness, enter = 0.0LF;
+  if (height > v.bottom_m + thickness + slack)
+    enter = sphere_entry(r0, mu, v.radius_m + v.bottom_m + thickness, false);
+  else if (height < v.bottom_m - slack)
+    enter = sphere_entry(r0, mu, v.radius_m + v.bottom_m, true);
+  if (enter < 0.0LF) return w;
+  w.stretch = float(stretch);
+  w.anchor_m = float(enter / stretch);
+  // The anchor is the rounded float itself, so that frame and distances agree.
+  p = scaled_point(volume, double(w.anchor_m));
+  r0 = sqrt(dot(p, p));
+  double cell = (r0 - v.radius_m - v.bottom_m) / v.cell_height_m;
+  double nearest = floor(cell + 0.5LF);
+  w.index.z = int(nearest);
+  w.rest.z = float(cell - nearest);
+  w.radius.z = float(r0);
+  w.radial.z = float(dot(p, d) / r0);
+  w.slope.z = 0.0;
+  w.kind = OUTSIDE;
+  w.leave_m = w.anchor_m;
+  return w;
+}
+
+vec3 shell_cells_at(int volume, Walk w, float t_m) {
+  float t = (t_m - w.anchor_m) * w.stretch;
+  float per_rad = 1.0 / float(volumes[volume].cell_rad);
+  float per_m = 1.0 / float(volumes[volume].cell_height_m);
+  return w.rest + vec3(angle_along_ray(w.radius.x, t, w.radial.x, w.slope.x) * per_rad,
+                       angle_along_ray(w.radius.y, t, w.radial.y, w.slope.y) * per_rad,
+                       height_along_ray(w.radius.z, t, w.radial.z) * per_m);
+}
+
+void shell_next_wall(int volume, Walk w, ivec3 low, ivec3 high, float t_m, out float wall_m,
+                     out int axis, out bool up) {
+  wall_m = FAR;
+  axis = 0;
+  up = true;
+  float per_stretch = 1.0 / w.stretch, cell_rad = float(volumes[volume].cell_rad);
+  float now = (t_m - w.anchor_m) * w.stretch;
+  for (int a = 0; a < 2; ++a) {
+    bool rises = w.slope[a] > 0.0;
+    int wall = rises ? high[a] : low[a];
+    float angle = wall_offset(wall, w.index[a], w.rest[a], cell_rad);
+    float t = w.slope[a] == 0.0 ? FAR : angular_wall_distance(w.radius[a], angle, w.radial[a], w.slope[a]);
+    // A wall that the ray is on may come out behind it by a rounding; one far behind is never met.
+    if (t < now - 1e-5 * (abs(now) + w.radius[a] * cell_rad)) t = FAR;
+    if (t < wall_m) {
+      wall_m = t;
+      axis = a;
+      up = rises;
+    }
+  }
+  float cell_height = float(volumes[volume].cell_height_m), near, far;
+  bool falls = now < -w.radius.z * w.radial.z;
+  if (falls) {
+    sphere_wall_distances(w.radius.z, -wall_offset(low.z, w.index.z, w.rest.z, cell_height),
+                          w.radial.z, near, far);
+    falls = near < no_hit();
+  }
+  if (!falls) {
+    sphere_wall_distances(w.radius.z, -wall_offset(high.z, w.index.z, w.rest.z, cell_height),
+                          w.radial.z, near, far);
+    near = far;
+  }
+  if (near < wall_m) {
+    wall_m = near;
+    axis = 2;
+    up = !falls;
+  }
+  wall_m = wall_m >= FAR ? FAR : max(w.anchor_m + wall_m * per_stretch, t_m);
+}
+
+// Behind a wall u or v at a face's end lies another face; its cell at t_m, in layer k.
+ivec3 shell_cross_face(int volume, inout Walk w, float t_m, int k) {
+  bool u = w.leave_axis == 0;
+  int axis = u ? FACE_U[w.root] : FACE_V[w.root];
+  float side = (u ? FACE_U_SIGN[w.root] : FACE_V_SIGN[w.root]) * (w.leave_up ? 1.0 : -1.0);
+  shell_set_face(volume, w, 2 * axis + (side < 0.0 ? 1 : 0));
+  ivec3 cell = w.index + ivec3(floor(shell_cells_at(volume, w, t_m)));
+  int last = volumes[volume].cells[0] - 1;
+  return ivec3(clamp(cell.xy, ivec2(0), ivec2(last)), k);
+}
+
+// Through the bottom: the shell is met again on the far side, unless the ground is in the way.
+void shell_reenter(int volume, inout Walk w) {
+  float near, far;
+  float above = -wall_offset(0, w.index.z, w.rest.z, float(volumes[volume].cell_height_m));
+  sphere_wall_distances(w.radius.z, above, w.radial.z, near, far);
+  w.kind = far < no_hit() ? OUTSIDE : GONE;
+  w.leave_m = far < no_hit() ? w.anchor_m + far / w.stretch : FAR;
+  w.leave_axis = -1;
+}
+
+float shell_cell_length(int volume, Walk w, float t_m) {
+  float t = (t_m - w.anchor_m) * w.stretch;
+  float r = w.radius.z + height_along_ray(w.radius.z, t, w.radial.z);
+  float mu = clamp((w.radius.z * w.radial.z + t) / r, -1.0, 1.0);
+  vec3 size = vec3(vec2(float(volumes[volume].cell_rad) * r), float(volumes[volume].cell_height_m)) / w.per_cell;
+  return 1.0 / (sqrt(1.0 - mu * mu) / min(size.x, size.y) + abs(mu) / size.z) / w.stretch;
+}
+
+dvec3 shell_world_of(int volume, int root, ivec3 index) {
+  VolumeData v = volumes[volume];
+  double half_turn = 0.5LF * double(v.cells[0]);
+  dvec2 tangent;
+  for (int slot = 0; slot < 2; ++slot) {
+    double s, c;
+    sin_cos_fp64((double(index[slot]) - half_turn) * v.cell_rad, s, c);
+    tangent[slot] = s / c;
+  }
+  dvec3 p = dvec3(0.0LF);
+  p[root >> 1] = double(face_sign(root));
+  p[FACE_U[root]] = double(FACE_U_SIGN[root]) * tangent.x;
+  p[FACE_V[root]] = double(FACE_V_SIGN[root]) * tangent.y;
+  p *= (v.radius_m + v.bottom_m + double(index.z) * v.cell_height_m) / sqrt(dot(p, p));
+  return dvec3(p.xy, p.z / v.z_scale);
+}

@@ -1,0 +1,259 @@
+#include "tree/forest.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "tree/view_metric.h"
+
+namespace nepho {
+namespace {
+
+// Candidates whose children are summarised together. Fixed, so that work, not results, depends on
+// the number of threads.
+constexpr std::size_t kBatch = 256;
+constexpr double kBytesPerMib = 1024.0 * 1024.0;
+
+void require(Status status, const BrickSource& source, const char* verb, NodeKey key) {
+  if (status == Status::kOk) return;
+  std::string text(512, '\0');
+  text.resize(std::min(source.last_error(text.data(), text.size()), text.size() - 1));
+  throw Error({.what = "a source failed to " + std::string(verb) + " a node: " + to_string(status),
+               .where = source.info().name + ", level " + std::to_string(key.level()) + ", root " +
+                        std::to_string(key.root()) + ", node " + std::to_string(key.i()) + " " +
+                        std::to_string(key.j()) + " " + std::to_string(key.k()),
+               .expected = "",
+               .found = text,
+               .hint = ""});
+}
+
+struct Counts {
+  std::uint64_t nodes = 0, bricks = 0, lit = 0;
+};
+
+struct Candidate {
+  double priority;
+  std::uint32_t volume;
+  NodeKey key;
+  std::uint32_t node;
+  bool operator<(const Candidate& other) const {
+    if (priority != other.priority) return priority > other.priority;
+    if (volume != other.volume) return volume < other.volume;
+    return key < other.key;
+  }
+};
+
+TreeNode leaf_from(NodeKey key, const NodeSummary& summary) {
+  TreeNode node;
+  node.key = key;
+  node.kind = NodeKind::kBrick;
+  if (summary.constant) {
+    node.constant_per_m = summary.constant_extinction_per_m;
+    node.kind = node.constant_per_m > 0 ? NodeKind::kConstant : NodeKind::kEmpty;
+  } else if (summary.empty) {
+    node.kind = NodeKind::kEmpty;
+  }
+  node.majorant_per_m = summary.max_extinction_per_m;
+  // Rounded up, so that the float is a bound as well.
+  node.error_bound_per_m = std::nextafter(float(summary.error_bound_per_m), INFINITY);
+  if (summary.error_bound_per_m == 0) node.error_bound_per_m = 0;
+  node.unresolved_variance_per_m2 = float(summary.unresolved_variance_per_m2);
+  return node;
+}
+
+class Refiner {
+ public:
+  Refiner(std::span<const RenderVolume> volumes, const Refinement& refinement)
+      : refinement_(refinement),
+        metric_(refinement.camera, refinement.settings),
+        budget_bytes_(refinement.settings.budget_mib * kBytesPerMib),
+        counts_(volumes.size()) {
+    for (const RenderVolume& volume : volumes)
+      forest_.volumes.push_back(
+          {.source = volume.source, .time_s = volume.time_s, .nodes = {}, .bricks = {}});
+  }
+
+  Forest run() {
+    plant_roots();
+    while (!queue_.empty() && split_first()) {
+    }
+    forest_.budget_bound = !queue_.empty();
+    forest_.cost_bytes = cost(counts_);
+    for (VolumeTree& tree : forest_.volumes) read_bricks(tree);
+    return std::move(forest_);
+  }
+
+ private:
+  std::uint64_t cost(const std::vector<Counts>& counts) const {
+    std::uint64_t sum = 0;
+    for (const Counts& c : counts) sum += refinement_.cost.bytes(c.nodes, c.bricks, c.lit);
+    return sum;
+  }
+
+  static void count(Counts& counts, NodeKind kind, int sign) {
+    const auto add = std::uint64_t(std::int64_t(sign));
+    if (kind == NodeKind::kBrick) counts.bricks += add;
+    if (kind == NodeKind::kBrick || kind == NodeKind::kConstant) counts.lit += add;
+  }
+
+  NodeSummary summarise(std::uint32_t volume, NodeKey key) const {
+    const VolumeTree& tree = forest_.volumes[volume];
+    NodeSummary summary;
+    require(tree.source->summary(key, tree.time_s, summary), *tree.source, "summarise", key);
+    return summary;
+  }
+
+  void plant_roots() {
+    for (std::uint32_t v = 0; v < forest_.volumes.size(); ++v) {
+      const VolumeInfo& info = forest_.volumes[v].source->info();
+      for (int root = 0; root < info.chart->roots(); ++root) {
+        const NodeKey key(root, 0, 0, 0, 0);
+        append(v, key, summarise(v, key), counts_);
+      }
+    }
+    if (double(cost(counts_)) > budget_bytes_)
+      throw Error(
+          {.what = "the memory budget does not hold the coarsest level of the scene",
+           .where = "budget",
+           .expected = "at least " + std::to_string(double(cost(counts_)) / kBytesPerMib) + " MiB",
+           .found = std::to_string(refinement_.settings.budget_mib) + " MiB",
+           .hint = "raise --budget-mib"});
+  }
+
+  // Adds a leaf to its tree, and to the queue where a split of it is worth something.
+  void append(std::uint32_t volume, NodeKey key, const NodeSummary& summary,
+              std::vector<Counts>& counts) {
+    VolumeTree& tree = forest_.volumes[volume];
+    const TreeNode node = leaf_from(key, summary);
+    const auto index = std::uint32_t(tree.nodes.size());
+    tree.nodes.push_back(node);
+    tree.finest_level_used = std::max(tree.finest_level_used, key.level());
+    ++counts[volume].nodes;
+    count(counts[volume], node.kind, +1);
+
+    const VolumeInfo& info = tree.source->info();
+    const bool nothing_below = summary.empty && summary.children == 0;
+    if (key.level() >= std::min(refinement_.settings.max_level, info.lattice.max_level()) ||
+        summary.constant || nothing_below || !(summary.error_bound_per_m > 0))
+      return;
+    const auto [voxel_pixels, length_m] = metric_.view(info, key);
+    const double depth_error = summary.error_bound_per_m * length_m;
+    if (voxel_pixels > refinement_.settings.pixels_per_voxel &&
+        depth_error > refinement_.settings.tolerance * kErrorShare)
+      queue_.insert({voxel_pixels * -std::expm1(-depth_error), volume, key, index});
+  }
+
+  const std::vector<NodeSummary>& children_of(const Candidate& first) {
+    const auto known = summaries_.find({first.volume, first.node});
+    if (known != summaries_.end()) return known->second;
+    struct Task {
+      const Candidate* candidate;
+      std::vector<NodeSummary> summaries;
+    };
+    std::vector<Task> tasks;
+    for (auto it = queue_.begin(); it != queue_.end() && tasks.size() < kBatch; ++it)
+      if (!summaries_.contains({it->volume, it->node})) tasks.push_back({&*it, {}});
+    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
+      const Candidate& c = *tasks[t].candidate;
+      for (const NodeKey child : lattice(c.volume).children(c.key))
+        tasks[t].summaries.push_back(summarise(c.volume, child));
+    });
+    for (Task& task : tasks)
+      summaries_[{task.candidate->volume, task.candidate->node}] = std::move(task.summaries);
+    return summaries_.at({first.volume, first.node});
+  }
+
+  const Lattice& lattice(std::uint32_t volume) const {
+    return forest_.volumes[volume].source->info().lattice;
+  }
+
+  // False where the budget refuses.
+  bool split_first() {
+    const Candidate first = *queue_.begin();
+    const std::vector<NodeSummary>& summaries = children_of(first);
+    const std::vector<NodeKey> keys = lattice(first.volume).children(first.key);
+    std::vector<Counts> after = counts_;
+    after[first.volume].nodes += keys.size();
+    count(after[first.volume], forest_.volumes[first.volume].nodes[first.node].kind, -1);
+    for (std::size_t c = 0; c < keys.size(); ++c)
+      count(after[first.volume], leaf_from(keys[c], summaries[c]).kind, +1);
+    if (double(cost(after)) > budget_bytes_) return false;
+
+    queue_.erase(queue_.begin());
+    std::vector<TreeNode>& nodes = forest_.volumes[first.volume].nodes;
+    count(counts_[first.volume], nodes[first.node].kind, -1);
+    nodes[first.node].kind = NodeKind::kInner;
+    nodes[first.node].first_child = std::uint32_t(nodes.size());
+    for (std::size_t c = 0; c < keys.size(); ++c)
+      append(first.volume, keys[c], summaries[c], counts_);
+    summaries_.erase({first.volume, first.node});
+    return true;
+  }
+
+  // Numbers the bricks and sun tiles in key order, then reads each brick once.
+  static void read_bricks(VolumeTree& tree) {
+    std::vector<std::uint32_t> order(tree.nodes.size());
+    for (std::uint32_t n = 0; n < order.size(); ++n) order[n] = n;
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return tree.nodes[a].key < tree.nodes[b].key;
+    });
+    for (const std::uint32_t n : order) {
+      TreeNode& node = tree.nodes[n];
+      if (node.kind != NodeKind::kBrick && node.kind != NodeKind::kConstant) continue;
+      node.lit = tree.lit_nodes++;
+      if (node.kind != NodeKind::kBrick) continue;
+      node.brick = std::uint32_t(tree.bricks.size());
+      tree.bricks.emplace_back().key = node.key;
+    }
+    tbb::parallel_for(std::size_t{0}, tree.bricks.size(), [&](std::size_t b) {
+      LeafBrick& brick = tree.bricks[b];
+      ChannelView view{.channel = Channel::kExtinction, .codes = brick.codes.data()};
+      require(tree.source->read(brick.key, tree.time_s, {&view, 1}), *tree.source, "read",
+              brick.key);
+      brick.scale = view.scale;
+      brick.offset = view.offset;
+      brick.max_abs_error = view.max_abs_error;
+    });
+  }
+
+  const Refinement& refinement_;
+  ViewMetric metric_;
+  double budget_bytes_;
+  Forest forest_;
+  std::vector<Counts> counts_;
+  std::set<Candidate> queue_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<NodeSummary>> summaries_;
+};
+
+}  // namespace
+
+Forest build_forest(std::span<const RenderVolume> volumes, const Refinement& refinement) {
+  return Refiner(volumes, refinement).run();
+}
+
+const TreeNode& leaf_at(const VolumeTree& tree, int root, const Index3& finest_cell) {
+  const Lattice& lattice = tree.source->info().lattice;
+  const Index3& finest = lattice.cells(lattice.max_level());
+  const TreeNode* node = &tree.nodes[std::size_t(root)];
+  while (node->kind == NodeKind::kInner) {
+    const int level = node->key.level();
+    const SplitMask mask = lattice.split_axes(level);
+    const Index3& cells = lattice.cells(level + 1);
+    std::uint32_t child = 0, bit = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      if (splits(mask, axis)) {
+        const std::uint32_t ratio = finest[std::size_t(axis)] / cells[std::size_t(axis)];
+        child |= (finest_cell[std::size_t(axis)] / ratio / kBrickCells & 1) << bit++;
+      }
+    node = &tree.nodes[node->first_child + child];
+  }
+  return *node;
+}
+
+}  // namespace nepho

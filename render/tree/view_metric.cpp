@@ -1,0 +1,119 @@
+#include "tree/view_metric.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bricks/box_chart.h"
+#include "bricks/shell_chart.h"
+
+namespace nepho {
+namespace {
+
+constexpr double kOffScreen = 0.25;
+// Arcs bulge between the grid points of a shell node: 22.5 deg of arc rises 2 % of its chord.
+constexpr double kBulge = 1.05;
+
+struct QBox {
+  glm::dvec3 low, high;
+};
+
+QBox q_box(const Lattice& lattice, NodeKey key) {
+  const Index3 n = lattice.nodes(key.level());
+  const glm::dvec3 count{double(n[0]), double(n[1]), double(n[2])};
+  const glm::dvec3 at{double(key.i()), double(key.j()), double(key.k())};
+  return {at / count, (at + 1.0) / count};
+}
+
+struct Shape {
+  std::array<glm::dvec3, 27> grid_m;
+  glm::dvec3 edge_m{0.0};  // longest row of grid points along each axis
+  glm::dvec3 center_m;
+  double radius_m = 0;
+};
+
+Shape shape_of(const Chart& chart, int root, const QBox& box) {
+  Shape shape;
+  for (int p = 0; p < 27; ++p) {
+    const glm::dvec3 f = glm::dvec3{double(p % 3), double(p / 3 % 3), double(p / 9)} / 2.0;
+    shape.grid_m[std::size_t(p)] = chart.ecef_m({root, glm::mix(box.low, box.high, f)});
+  }
+  shape.center_m = shape.grid_m[13];
+  constexpr std::array<int, 3> stride = {1, 3, 9};
+  for (int p = 0; p < 27; ++p) {
+    const glm::dvec3& here = shape.grid_m[std::size_t(p)];
+    shape.radius_m = std::max(shape.radius_m, kBulge * glm::length(here - shape.center_m));
+    for (int axis = 0; axis < 3; ++axis) {
+      const int step = stride[std::size_t(axis)];
+      if (p / step % 3 != 0) continue;
+      const glm::dvec3& middle = shape.grid_m[std::size_t(p + step)];
+      const glm::dvec3& end = shape.grid_m[std::size_t(p + 2 * step)];
+      shape.edge_m[axis] =
+          std::max(shape.edge_m[axis], glm::length(middle - here) + glm::length(end - middle));
+    }
+  }
+  return shape;
+}
+
+// The eye in the node's coordinates, moved by whole periods to where it is nearest.
+glm::dvec3 nearest_image(const BoxChart& chart, const QBox& box, glm::dvec3 eye_m) {
+  const glm::dvec3 q = chart.inverse_edges() * (eye_m - chart.origin_m());
+  const glm::dvec3 turns = glm::round(q - (box.low + box.high) / 2.0);
+  if (chart.periodic().x) eye_m -= turns.x * chart.edges_m()[0];
+  if (chart.periodic().y) eye_m -= turns.y * chart.edges_m()[1];
+  return eye_m;
+}
+
+}  // namespace
+
+ViewMetric::ViewMetric(const Camera& camera, const RenderSettings& settings)
+    : eye_m_(camera.eye_m),
+      forward_(glm::normalize(camera.target_m - camera.eye_m)),
+      right_(glm::normalize(glm::cross(forward_, camera.up))),
+      up_(glm::cross(right_, forward_)),
+      tan_half_height_(std::tan(camera.vertical_fov_rad / 2)),
+      tan_half_width_(tan_half_height_ * settings.width / settings.height),
+      pixel_rad_(2 * tan_half_height_ / settings.height) {}
+
+bool ViewMetric::on_screen(const glm::dvec3& center_m, double radius_m) const {
+  const glm::dvec3 offset = center_m - eye_m_;
+  const double depth = glm::dot(offset, forward_);
+  if (depth < -radius_m) return false;
+  const auto inside = [&](double across, double tangent) {
+    return std::abs(across) - depth * tangent < radius_m * std::sqrt(1 + tangent * tangent);
+  };
+  return inside(glm::dot(offset, right_), tan_half_width_) &&
+         inside(glm::dot(offset, up_), tan_half_height_);
+}
+
+ViewMetric::NodeView ViewMetric::view(const VolumeInfo& info, NodeKey key) const {
+  const QBox box = q_box(info.lattice, key);
+  const Shape shape = shape_of(*info.chart, key.root(), box);
+  glm::dvec3 eye_m = eye_m_;
+  bool repeats = false;
+  glm::dvec3 q;
+  if (const auto* chart = dynamic_cast<const BoxChart*>(info.chart.get())) {
+    repeats = chart->periodic().x || chart->periodic().y;
+    eye_m = nearest_image(*chart, box, eye_m_);
+    q = chart->inverse_edges() * (eye_m - chart->origin_m());
+  } else {
+    q = static_cast<const ShellChart&>(*info.chart).coordinates(key.root(), eye_m);
+  }
+  const glm::dvec3 clamped = glm::clamp(q, box.low, box.high);
+  double distance_m = glm::length(info.chart->ecef_m({key.root(), clamped}) - eye_m);
+  for (const glm::dvec3& point : shape.grid_m)
+    distance_m = std::min(distance_m, glm::length(point - eye_m));
+
+  double voxel_m = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    if (splits(info.lattice.split_axes(key.level()), axis))
+      voxel_m = std::max(voxel_m, shape.edge_m[axis] / kBrickCells);
+  // An eye in the node looks at voxels from half a voxel away.
+  const double pixels = voxel_m / (std::max(distance_m, voxel_m / 2) * pixel_rad_);
+  const bool seen = repeats || on_screen(shape.center_m, shape.radius_m);
+  const double length_m = std::max({shape.edge_m.x, shape.edge_m.y, shape.edge_m.z});
+  return {seen ? pixels : kOffScreen * pixels, length_m};
+}
+
+}  // namespace nepho

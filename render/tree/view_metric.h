@@ -1,0 +1,30 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "bricks/volume_info.h"
+#include "scene/scene.h"
+
+namespace nepho {
+
+// How large a node appears in a picture. Distances are to the nearest of the node's own 27 grid
+// points and the eye's clamped coordinates: exact in rectangular boxes, never too short.
+class ViewMetric {
+ public:
+  ViewMetric(const Camera& camera, const RenderSettings& settings);
+
+  struct NodeView {
+    double voxel_pixels;  // of the axes that a split halves; off-screen: a quarter
+    double length_m;      // the longest that a ray can be in the node, but for its diagonal
+  };
+  // Of a node that has a finer level.
+  NodeView view(const VolumeInfo& info, NodeKey key) const;
+
+ private:
+  bool on_screen(const glm::dvec3& center_m, double radius_m) const;
+
+  glm::dvec3 eye_m_, forward_, right_, up_;
+  double tan_half_height_, tan_half_width_, pixel_rad_;
+};
+
+}  // namespace nepho
