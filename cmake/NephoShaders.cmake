@@ -1,6 +1,6 @@
 # nepho_embed_shaders(<target> INCLUDE_DIRS ... SHADERS a.comp ...): flattens `#include "x.glsl"` (GL
-# 4.5 core has none) with #line kept, embeds each shader as `extern const char* const
-# nepho_shader_<name>` and, where glslangValidator is installed, adds a unit test that it parses.
+# 4.5 core has none) with #line kept and embeds each shader as `extern const char* const
+# nepho_shader_<name>`.
 # In `#line N S`, S numbers the files in the order of the comment at the shader's head.
 set(NEPHO_FLATTEN_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/flatten_shader.cmake)
 find_program(NEPHO_GLSLANG glslangValidator)
@@ -22,4 +22,22 @@ function(nepho_embed_shaders target)
     target_sources(${target} PRIVATE ${out}/${name}.cpp)
     set_property(GLOBAL APPEND PROPERTY NEPHO_FLAT_SHADERS ${out}/${name}.comp)
   endforeach()
+endfunction()
+
+# nepho_add_shader_tests(<shader that must be refused>): every flattened shader so far parses.
+function(nepho_add_shader_tests broken)
+  if(NOT NEPHO_GLSLANG)
+    message(STATUS "nephoscope: left out shader tests: no glslangValidator")
+    return()
+  endif()
+  get_property(shaders GLOBAL PROPERTY NEPHO_FLAT_SHADERS)
+  foreach(shader IN LISTS shaders)
+    get_filename_component(name ${shader} NAME_WE)
+    add_test(NAME shaders.${name}_parses COMMAND ${NEPHO_GLSLANG} ${shader})
+    set_tests_properties(shaders.${name}_parses PROPERTIES LABELS unit)
+  endforeach()
+  add_test(NAME shaders.broken_is_refused COMMAND ${NEPHO_GLSLANG} ${broken})
+  set_tests_properties(shaders.broken_is_refused PROPERTIES LABELS "unit;mutant"
+    PASS_REGULAR_EXPRESSION "cannot convert from")
+  set_property(GLOBAL APPEND PROPERTY NEPHO_MUTANTS shaders.broken_is_refused)
 endfunction()

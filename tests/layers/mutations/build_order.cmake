@@ -1,2 +1,2 @@
-# expect: layer 'render' must not use layer 'ingest': nepho_tree -> nepho_source_analytic
-add_dependencies(nepho_tree nepho_source_analytic)
+# expect: layer 'ingest' must not use layer 'render': nepho_source_api -> nepho_tree
+add_dependencies(nepho_source_api nepho_tree)
