@@ -24,20 +24,19 @@ function(nepho_embed_shaders target)
   endforeach()
 endfunction()
 
-# nepho_add_shader_tests(<shader that must be refused>): every flattened shader so far parses.
-function(nepho_add_shader_tests broken)
+# nepho_add_shader_test(<permutation> MACROS NAME=value ... SHADERS ...): these shaders parse with
+# these NEPHO_ macros, which the program defines at run time.
+function(nepho_add_shader_test permutation)
+  cmake_parse_arguments(A "" "" "MACROS;SHADERS" ${ARGN})
   if(NOT NEPHO_GLSLANG)
-    message(STATUS "nephoscope: left out shader tests: no glslangValidator")
+    message(STATUS "nephoscope: left out shader test ${permutation}: no glslangValidator")
     return()
   endif()
+  list(TRANSFORM A_MACROS PREPEND -DNEPHO_)
   get_property(shaders GLOBAL PROPERTY NEPHO_FLAT_SHADERS)
-  foreach(shader IN LISTS shaders)
-    get_filename_component(name ${shader} NAME_WE)
-    add_test(NAME shaders.${name}_parses COMMAND ${NEPHO_GLSLANG} ${shader})
-    set_tests_properties(shaders.${name}_parses PROPERTIES LABELS unit)
-  endforeach()
-  add_test(NAME shaders.broken_is_refused COMMAND ${NEPHO_GLSLANG} ${broken})
-  set_tests_properties(shaders.broken_is_refused PROPERTIES LABELS "unit;mutant"
-    PASS_REGULAR_EXPRESSION "cannot convert from")
-  set_property(GLOBAL APPEND PROPERTY NEPHO_MUTANTS shaders.broken_is_refused)
+  list(JOIN A_SHADERS "|" wanted)
+  list(FILTER shaders INCLUDE REGEX "/(${wanted})\\.comp$")
+  add_test(NAME shaders.${permutation}_parses COMMAND
+    sh ${PROJECT_SOURCE_DIR}/tests/shaders/parse.sh ${NEPHO_GLSLANG} ${A_MACROS} -- ${shaders})
+  set_tests_properties(shaders.${permutation}_parses PROPERTIES LABELS unit)
 endfunction()
