@@ -1,2 +1,2 @@
-# expect: layer 'render' must not use layer 'ingest': nepho_tree -> nepho_source_api
+# expect: layer 'render' must not use layer 'ingest': nepho_[a-z_]+ -> nepho_source_api
 target_link_libraries(nepho_tree PRIVATE nepho::source_api)
