@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "tree/source_verbs.h"
 #include "tree/view_metric.h"
 
 namespace nepho {
@@ -19,19 +20,6 @@ namespace {
 // the number of threads.
 constexpr std::size_t kBatch = 256;
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
-
-void require(Status status, const BrickSource& source, const char* verb, NodeKey key) {
-  if (status == Status::kOk) return;
-  std::string text(512, '\0');
-  text.resize(std::min(source.last_error(text.data(), text.size()), text.size() - 1));
-  throw Error({.what = "a source failed to " + std::string(verb) + " a node: " + to_string(status),
-               .where = source.info().name + ", level " + std::to_string(key.level()) + ", root " +
-                        std::to_string(key.root()) + ", node " + std::to_string(key.i()) + " " +
-                        std::to_string(key.j()) + " " + std::to_string(key.k()),
-               .expected = "",
-               .found = text,
-               .hint = ""});
-}
 
 struct Counts {
   std::uint64_t nodes = 0, bricks = 0, lit = 0;
@@ -105,7 +93,8 @@ class Refiner {
   NodeSummary summarise(std::uint32_t volume, NodeKey key) const {
     const VolumeTree& tree = forest_.volumes[volume];
     NodeSummary summary;
-    require(tree.source->summary(key, tree.time_s, summary), *tree.source, "summarise", key);
+    throw_on_failure(tree.source->summary(key, tree.time_s, summary), *tree.source, "summarise",
+                     key);
     return summary;
   }
 
@@ -212,13 +201,7 @@ class Refiner {
       tree.bricks.emplace_back().key = node.key;
     }
     tbb::parallel_for(std::size_t{0}, tree.bricks.size(), [&](std::size_t b) {
-      LeafBrick& brick = tree.bricks[b];
-      ChannelView view{.channel = Channel::kExtinction, .codes = brick.codes.data()};
-      require(tree.source->read(brick.key, tree.time_s, {&view, 1}), *tree.source, "read",
-              brick.key);
-      brick.scale = view.scale;
-      brick.offset = view.offset;
-      brick.max_abs_error = view.max_abs_error;
+      read_brick(*tree.source, tree.time_s, tree.bricks[b].key, tree.bricks[b]);
     });
   }
 
