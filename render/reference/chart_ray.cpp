@@ -62,7 +62,9 @@ class BoxRay final : public ChartRay {
     }
     return exit;
   }
-  bool cross_end(int&, Cell&, const Exit& exit) const override { return periodic(exit.axis); }
+  bool cross_end(const Exit& exit, double&, int&, Cell&) const override {
+    return periodic(exit.axis);
+  }
   Index3 wrapped(const Cell& cell) const override {
     Index3 result;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -129,20 +131,10 @@ class ShellRay final : public ChartRay {
     if (!top) return s;
     s.t_m = std::max(0.0, top->first);
     s.end_m = std::min(t_max_m, top->second);
-    if (const auto bottom = sphere_chord(origin_, direction_, radius_m(0))) {
-      if (glm::length(origin_) >= radius_m(0)) {
-        if (bottom->first > 0) s.end_m = std::min(s.end_m, bottom->first);
-      } else {
+    if (glm::length(origin_) < radius_m(0))
+      if (const auto bottom = sphere_chord(origin_, direction_, radius_m(0)))
         s.t_m = std::max(s.t_m, bottom->second);
-      }
-    }
-    if (s.end_m <= s.t_m) return s;
-    const glm::dvec3 p = origin_ + s.t_m * direction_;
-    const double ratio = chart_.body().polar_m / chart_.body().equatorial_m;
-    s.root = chart_.locate({p.x, p.y, p.z * ratio}).root;
-    const glm::dvec3 at = cells_at(s.root, s.t_m);
-    for (int a = 0; a < 3; ++a)
-      s.cell[std::size_t(a)] = floor_clamped(at[a], cells_[std::size_t(a)]);
+    if (s.end_m > s.t_m) enter(s.t_m, s.root, s.cell);
     return s;
   }
   glm::dvec3 cells_at(int root, double t_m) const override {
@@ -183,8 +175,15 @@ class ShellRay final : public ChartRay {
     if (t < exit.t_m) exit = {t, 2, 1};
     return exit;
   }
-  bool cross_end(int& root, Cell& cell, const Exit& exit) const override {
-    if (exit.axis == 2) return false;
+  bool cross_end(const Exit& exit, double& t_m, int& root, Cell& cell) const override {
+    if (exit.axis == 2) {
+      if (exit.side > 0) return false;
+      const auto bottom = sphere_chord(origin_, direction_, radius_m(0));
+      if (!bottom) return false;
+      t_m = std::max(t_m, bottom->second);
+      enter(t_m, root, cell);
+      return true;
+    }
     // The other name of the middle sample of the edge that was crossed.
     Column edge{root, cells_[0] / 2, cells_[1] / 2};
     (exit.axis == 0 ? edge.i : edge.j) = exit.side > 0 ? cells_[0] : 0;
@@ -201,6 +200,14 @@ class ShellRay final : public ChartRay {
     cell[0] = index(other.i, 0);
     cell[1] = index(other.j, 1);
     return true;
+  }
+  // Finds root and cell from the position alone.
+  void enter(double t_m, int& root, Cell& cell) const {
+    const glm::dvec3 p = origin_ + t_m * direction_;
+    const double ratio = chart_.body().polar_m / chart_.body().equatorial_m;
+    root = chart_.locate({p.x, p.y, p.z * ratio}).root;
+    const glm::dvec3 at = cells_at(root, t_m);
+    for (int a = 0; a < 3; ++a) cell[std::size_t(a)] = floor_clamped(at[a], cells_[std::size_t(a)]);
   }
   Index3 wrapped(const Cell& cell) const override {
     return {std::uint32_t(cell[0]), std::uint32_t(cell[1]), std::uint32_t(cell[2])};
@@ -231,16 +238,24 @@ std::unique_ptr<ChartRay> chart_ray(const VolumeInfo& info, const Ray& ray) {
   return std::make_unique<ShellRay>(static_cast<const ShellChart&>(*info.chart), cells, ray);
 }
 
-double ground_distance_m(const Chart& chart, const Ray& ray) {
+void Ground::add(const Chart& chart) {
   const auto* shell = dynamic_cast<const ShellChart*>(&chart);
-  if (!shell) return kNoDistance_m;
-  const double radius_m = shell->body().equatorial_m + shell->bottom_m();
-  const glm::dvec3 origin = shell->to_scaled(ray.origin_m);
-  // A millimetre: a point of the ground itself sees the sky.
-  if (glm::length(origin) < radius_m - 1e-3) return kNoDistance_m;
-  const auto chord = sphere_chord(origin, shell->to_scaled(ray.direction), radius_m);
-  const bool sinking = glm::dot(origin, shell->to_scaled(ray.direction)) < 0;
-  return chord && sinking ? std::max(chord->first, 0.0) : kNoDistance_m;
+  if (!shell) return;
+  const double radius_m = shell->body().equatorial_m + std::min(0.0, shell->bottom_m());
+  if (radius_m_ != 0 && radius_m_ <= radius_m) return;
+  radius_m_ = radius_m;
+  z_scale_ = shell->body().equatorial_m / shell->body().polar_m;
+}
+
+double Ground::distance_m(const Ray& ray) const {
+  if (radius_m_ == 0) return kNoDistance_m;
+  const glm::dvec3 scale{1, 1, z_scale_};
+  const glm::dvec3 origin = scale * ray.origin_m, direction = scale * ray.direction;
+  // A centimetre: a point of the ground itself sees the sky.
+  if (glm::dot(origin, direction) >= 0 || glm::length(origin) < radius_m_ - 0.01)
+    return kNoDistance_m;
+  const auto chord = sphere_chord(origin, direction, radius_m_);
+  return chord ? std::max(chord->first, 0.0) : kNoDistance_m;
 }
 
 }  // namespace nepho

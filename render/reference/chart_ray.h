@@ -39,8 +39,9 @@ class ChartRay {
   virtual glm::dvec3 cells_at(int root, double t_m) const = 0;
   // Where a block that holds the ray at t is left.
   virtual Exit exit(int root, const Block& block, double t_m) const = 0;
-  // Goes on beyond the end of a root; false where the chart ends there.
-  virtual bool cross_end(int& root, Cell& cell, const Exit& exit) const = 0;
+  // Where the ray goes on beyond the end of a root: on the next, or after a gap (below a shell's
+  // bottom). False where the chart ends.
+  virtual bool cross_end(const Exit& exit, double& t_m, int& root, Cell& cell) const = 0;
   // Index inside the root.
   virtual Index3 wrapped(const Cell& cell) const = 0;
   // Simpson sub-steps for `length_m` of ray in a cell that is `cells_high` finest cells high.
@@ -49,7 +50,16 @@ class ChartRay {
 
 std::unique_ptr<ChartRay> chart_ray(const VolumeInfo& info, const Ray& ray);
 
-// A shell's bottom is the ground, and black: where the ray meets it from above, or kNoDistance_m.
-double ground_distance_m(const Chart& chart, const Ray& ray);
+// The planet's body: black to the sun, `below` to the eye. Of the scene's shells, the lowest of
+// their bottoms, but no higher than sea level.
+class Ground {
+ public:
+  void add(const Chart& chart);
+  // Where the ray meets it from above, or kNoDistance_m.
+  double distance_m(const Ray& ray) const;
+
+ private:
+  double radius_m_ = 0, z_scale_ = 1;  // in the space where it is a sphere; 0: none
+};
 
 }  // namespace nepho

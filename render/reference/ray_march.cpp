@@ -19,6 +19,13 @@ double luminance(const glm::dvec3& c) {
   return f64::luminance(c.r, c.g, c.b);
 }
 
+// A direction across `up`, whichever: the renderer's choice.
+glm::dvec3 across(const glm::dvec3& up) {
+  const glm::dvec3 other =
+      std::abs(up.x) < 0.6 ? glm::dvec3{1.0, 0.0, 0.0} : glm::dvec3{0.0, 1.0, 0.0};
+  return glm::normalize(glm::cross(up, other));
+}
+
 glm::dvec3 table_phase(const std::vector<float>& table, double one_minus_cos) {
   const double at = f64::phase_table_coordinate(one_minus_cos) * (kPhaseTexels - 1);
   const auto i = std::size_t(std::clamp(int(at), 0, kPhaseTexels - 2));
@@ -33,15 +40,14 @@ glm::dvec3 table_phase(const std::vector<float>& table, double one_minus_cos) {
 }  // namespace
 
 std::array<glm::dvec3, 3> sky_axes(const glm::dvec3& up) {
-  const glm::dvec3 helper =
-      std::abs(up.z) < 0.9 ? glm::dvec3{0.0, 0.0, 1.0} : glm::dvec3{1.0, 0.0, 0.0};
-  const glm::dvec3 east = glm::normalize(glm::cross(helper, up));
+  const glm::dvec3 east = across(up);
   return {up, east, glm::cross(up, east)};
 }
 
 Ray camera_ray(const Camera& camera, int width, int height, int x, int y) {
   const glm::dvec3 forward = glm::normalize(camera.target_m - camera.eye_m);
-  const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
+  glm::dvec3 right = glm::cross(forward, camera.up);
+  right = glm::length(right) > 1e-9 ? glm::normalize(right) : across(forward);
   const glm::dvec3 up = glm::cross(right, forward);
   const double half = std::tan(camera.vertical_fov_rad / 2);
   const double u = (2.0 * x + 1) / width - 1, v = 1 - (2.0 * y + 1) / height;
@@ -61,6 +67,7 @@ RayMarch::RayMarch(const LevelSet& levels, const RenderRequest& request, MarchSe
                           sky.below_W_per_m2_sr_nm) > 0;
   octaves_ = request.settings.light == nepho::Light::kOctaves ? request.settings.octaves : 1;
   sky_axes_ = sky_axes(glm::normalize(sky.up));
+  for (std::size_t v = 0; v < levels.size(); ++v) ground_.add(*levels.info(v).chart);
   for (const RenderVolume& volume : request.volumes) {
     phase_tables_.push_back(phase_table(volume.phase));
     asymmetry_.push_back(phase_bulk(volume.phase).asymmetry[1]);
@@ -68,9 +75,7 @@ RayMarch::RayMarch(const LevelSet& levels, const RenderRequest& request, MarchSe
 }
 
 double RayMarch::optical_depth(const Ray& ray, double t_max_m) const {
-  for (std::size_t v = 0; v < levels_.size(); ++v)
-    if (ground_distance_m(*levels_.info(v).chart, ray) < t_max_m)
-      return std::numeric_limits<double>::infinity();
+  if (ground_.distance_m(ray) < t_max_m) return std::numeric_limits<double>::infinity();
   double tau = 0;
   for (std::size_t v = 0; v < levels_.size(); ++v) {
     VolumeWalk walk(levels_, v, ray, t_max_m, true);
@@ -123,16 +128,14 @@ class RayMarch::Trace {
       std::vector<glm::dvec3>& terms = lamp_.scattering.emplace_back();
       terms.push_back(table_phase(march.phase_tables_[v], one_minus_cos));
       for (int n = 1; n < march.octaves_; ++n)
-        terms.emplace_back(f64::octave_scattering(n) *
-                           f64::hg_phase(one_minus_cos,
-                                         f64::octave_asymmetry(n, march.asymmetry_[v])));
+        terms.emplace_back(
+            f64::octave_scattering(n) *
+            f64::hg_phase(one_minus_cos, f64::octave_asymmetry(n, march.asymmetry_[v])));
     }
   }
 
   MarchResult run() {
-    double ground_m = kNoDistance_m;
-    for (std::size_t v = 0; v < march_.levels_.size(); ++v)
-      ground_m = std::min(ground_m, ground_distance_m(*march_.levels_.info(v).chart, ray_));
+    const double ground_m = march_.ground_.distance_m(ray_);
     for (std::size_t v = 0; v < march_.levels_.size(); ++v) {
       walks_.emplace_back(march_.levels_, v, ray_, ground_m, false);
       active_.push_back(walks_.back().next());
@@ -231,10 +234,9 @@ class RayMarch::Trace {
     glm::dvec3 ambient;
     if (march_.sky_lights_)
       for (int c = 0; c < 3; ++c)
-        ambient[c] = f64::sky_source(at.visible_up, at.visible_side, at.visible_down,
-                                     request.sky.zenith_W_per_m2_sr_nm[c],
-                                     request.sky.horizon_W_per_m2_sr_nm[c],
-                                     request.sky.below_W_per_m2_sr_nm[c]);
+        ambient[c] = f64::sky_source(
+            at.visible_up, at.visible_side, at.visible_down, request.sky.zenith_W_per_m2_sr_nm[c],
+            request.sky.horizon_W_per_m2_sr_nm[c], request.sky.below_W_per_m2_sr_nm[c]);
     glm::dvec3 sum;
     double weights = 0;
     for (const std::size_t v : volumes_) {

@@ -16,9 +16,10 @@ namespace nepho {
 // Per volume with extinction k and albedo w, source per unit of optical depth
 //   S = w (E0 sum_n a^n p_n(theta) exp(-b^n tau_sun) + sky_source(visible up, side, down))
 // through all volumes, p_0 the table's phase function, p_n = HG(g c^n); together sum k S / sum k.
-// A step of optical depth x adds T x (S0 e0(x) + (S1 - S0) w1(x)), and is halved while the estimated
-// error of the linear source, T (1 - e^-x) |dS| |d ln S| / 8, is above `source_tolerance` of the
-// pixel's radiance. The ground is the bottom of a shell: black to the sun, `below` to the eye.
+// A step of optical depth x adds T x (S0 e0(x) + (S1 - S0) w1(x)), and is halved while the
+// estimated error of the linear source, T (1 - e^-x) |dS| |d ln S| / 8, is above `source_tolerance`
+// of the pixel's radiance. The ground is the bottom of a shell: black to the sun, `below` to the
+// eye.
 struct MarchSettings {
   double source_tolerance = 1e-4;
   double least_transmittance = 1e-6;  // the ray ends there
@@ -29,7 +30,7 @@ struct MarchResult {
   double optical_depth = 0;  // as far as the ray went
 };
 
-// Unit rows: up, and two level directions. Sky light comes from +-each.
+// Unit rows: up, and two level directions, as the renderer's. Sky light comes from +-each.
 std::array<glm::dvec3, 3> sky_axes(const glm::dvec3& up);
 
 // Through the middle of a pixel; row 0 is at the top.
@@ -57,6 +58,7 @@ class RayMarch {
   const LevelSet& levels_;
   const RenderRequest request_;
   MarchSettings settings_;
+  Ground ground_;
   bool sky_lights_ = false;
   int octaves_ = 1;
   std::array<glm::dvec3, 3> sky_axes_;

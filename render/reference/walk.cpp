@@ -28,7 +28,8 @@ VolumeWalk::VolumeWalk(const LevelSet& levels, std::size_t volume, const Ray& ra
       root_(start_.root),
       cell_(start_.cell),
       done_(!(start_.end_m > start_.t_m)),
-      t1_m_(start_.t_m) {}
+      t1_m_(start_.t_m),
+      resume_m_(start_.t_m) {}
 
 bool VolumeWalk::in_leaf() const {
   if (!found_ || leaf_root_ != root_) return false;
@@ -73,7 +74,7 @@ void VolumeWalk::load_corners() {
 bool VolumeWalk::next() {
   if (done_) return false;
   if (++pieces_ > kMaxPieces) throw std::logic_error("VolumeWalk: does not end");
-  t0_m_ = t1_m_;
+  t0_m_ = resume_m_;
   if (!in_leaf()) find_leaf();
   block_ = node_;
   const bool cells =
@@ -87,6 +88,7 @@ bool VolumeWalk::next() {
 
   const ChartRay::Exit exit = ray_->exit(root_, block_, t0_m_);
   t1_m_ = std::min(exit.t_m, start_.end_m);
+  resume_m_ = t1_m_;
   done_ = !(exit.t_m < start_.end_m);
   if (done_) return true;
   const glm::dvec3 at = ray_->cells_at(root_, exit.t_m);
@@ -101,7 +103,7 @@ bool VolumeWalk::next() {
   const Lattice& lattice = levels_.info(volume_).lattice;
   const auto axis = std::size_t(exit.axis);
   if (cell_[axis] < 0 || cell_[axis] >= lattice.cells(lattice.max_level())[axis])
-    done_ = !ray_->cross_end(root_, cell_, exit);
+    done_ = !ray_->cross_end(exit, resume_m_, root_, cell_) || resume_m_ >= start_.end_m;
   return true;
 }
 

@@ -46,7 +46,7 @@ class VolumeWalk {
   ChartRay::Block node_{}, block_{};
   ChartRay::Cell size_{};  // finest cells in one of the leaf's
   std::array<double, 8> corners_{};
-  double t0_m_ = 0, t1_m_ = 0;
+  double t0_m_ = 0, t1_m_ = 0, resume_m_ = 0;
   std::size_t pieces_ = 0;
 };
 

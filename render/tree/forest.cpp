@@ -60,8 +60,7 @@ class Refiner {
   Refiner(std::span<const RenderVolume> volumes, const Refinement& refinement)
       : refinement_(refinement),
         metric_(refinement.camera, refinement.settings),
-        budget_bytes_(refinement.settings.budget_mib * kBytesPerMib),
-        counts_(volumes.size()) {
+        budget_bytes_(refinement.settings.budget_mib * kBytesPerMib) {
     for (const RenderVolume& volume : volumes)
       forest_.volumes.push_back(
           {.source = volume.source, .time_s = volume.time_s, .nodes = {}, .bricks = {}});
@@ -79,14 +78,8 @@ class Refiner {
 
  private:
   // All volumes share the renderer's textures, so the bill is made out once, for the sums.
-  std::uint64_t cost(const std::vector<Counts>& counts) const {
-    Counts sum;
-    for (const Counts& c : counts) {
-      sum.nodes += c.nodes;
-      sum.bricks += c.bricks;
-      sum.lit += c.lit;
-    }
-    return refinement_.cost.bytes(sum.nodes, sum.bricks, sum.lit);
+  std::uint64_t cost(const Counts& counts) const {
+    return refinement_.cost.bytes(counts.nodes, counts.bricks, counts.lit);
   }
 
   static void count(Counts& counts, NodeKind kind, int sign) {
@@ -108,7 +101,7 @@ class Refiner {
       const VolumeInfo& info = forest_.volumes[v].source->info();
       for (int root = 0; root < info.chart->roots(); ++root) {
         const NodeKey key(root, 0, 0, 0, 0);
-        append(v, key, summarise(v, key), counts_);
+        append(v, key, summarise(v, key));
       }
     }
     if (double(cost(counts_)) > budget_bytes_)
@@ -121,15 +114,14 @@ class Refiner {
   }
 
   // Adds a leaf to its tree, and to the queue where a split of it is worth something.
-  void append(std::uint32_t volume, NodeKey key, const NodeSummary& summary,
-              std::vector<Counts>& counts) {
+  void append(std::uint32_t volume, NodeKey key, const NodeSummary& summary) {
     VolumeTree& tree = forest_.volumes[volume];
     const TreeNode node = leaf_from(key, summary);
     const auto index = std::uint32_t(tree.nodes.size());
     tree.nodes.push_back(node);
     tree.finest_level_used = std::max(tree.finest_level_used, key.level());
-    ++counts[volume].nodes;
-    count(counts[volume], node.kind, +1);
+    ++counts_.nodes;
+    count(counts_, node.kind, +1);
 
     const VolumeInfo& info = tree.source->info();
     const bool nothing_below = summary.empty && summary.children == 0;
@@ -172,20 +164,19 @@ class Refiner {
     const Candidate first = *queue_.begin();
     const std::vector<NodeSummary>& summaries = children_of(first);
     const std::vector<NodeKey> keys = lattice(first.volume).children(first.key);
-    std::vector<Counts> after = counts_;
-    after[first.volume].nodes += keys.size();
-    count(after[first.volume], forest_.volumes[first.volume].nodes[first.node].kind, -1);
+    Counts after = counts_;
+    after.nodes += keys.size();
+    count(after, forest_.volumes[first.volume].nodes[first.node].kind, -1);
     for (std::size_t c = 0; c < keys.size(); ++c)
-      count(after[first.volume], leaf_from(keys[c], summaries[c]).kind, +1);
+      count(after, leaf_from(keys[c], summaries[c]).kind, +1);
     if (double(cost(after)) > budget_bytes_) return false;
 
     queue_.erase(queue_.begin());
     std::vector<TreeNode>& nodes = forest_.volumes[first.volume].nodes;
-    count(counts_[first.volume], nodes[first.node].kind, -1);
+    count(counts_, nodes[first.node].kind, -1);
     nodes[first.node].kind = NodeKind::kInner;
     nodes[first.node].first_child = std::uint32_t(nodes.size());
-    for (std::size_t c = 0; c < keys.size(); ++c)
-      append(first.volume, keys[c], summaries[c], counts_);
+    for (std::size_t c = 0; c < keys.size(); ++c) append(first.volume, keys[c], summaries[c]);
     summaries_.erase({first.volume, first.node});
     return true;
   }
@@ -214,7 +205,7 @@ class Refiner {
   ViewMetric metric_;
   double budget_bytes_;
   Forest forest_;
-  std::vector<Counts> counts_;
+  Counts counts_;
   std::set<Candidate> queue_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<NodeSummary>> summaries_;
 };
