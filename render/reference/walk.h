@@ -27,6 +27,8 @@ class VolumeWalk {
   double extinction_per_m(double t_m) const;  // t inside the piece
   int sub_steps(double length_m) const;       // Simpson's, for such a length of it
   std::size_t pieces() const { return pieces_; }
+  int root() const { return leaf_root_; }                  // of the piece
+  const ChartRay::Block& block() const { return block_; }  // its walls, in finest cells
 
  private:
   bool in_leaf() const;
