@@ -155,6 +155,7 @@ class RayMarch::Trace {
       if (something) add_interval(t, end);
       t = end;
     }
+    result_.scattered_W_per_m2_sr_nm = result_.radiance_W_per_m2_sr_nm;
     add_background(ground_m < kNoDistance_m);
     return result_;
   }

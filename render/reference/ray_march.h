@@ -27,7 +27,8 @@ struct MarchSettings {
 
 struct MarchResult {
   glm::dvec3 radiance_W_per_m2_sr_nm{0.0};
-  double optical_depth = 0;  // as far as the ray went
+  glm::dvec3 scattered_W_per_m2_sr_nm{0.0};  // the part that is not background
+  double optical_depth = 0;                  // as far as the ray went
 };
 
 // Unit rows: up, and two level directions, as the renderer's. Sky light comes from +-each.
