@@ -126,7 +126,6 @@ TEST(Forest, BudgetHoldsAndMoreOfItNeverCoarsens) {
       distinct += keys.size() > before[v].size();
       before[v] = std::move(keys);
     }
-    // One bill for the sums: the volumes share the textures.
     const std::uint64_t bytes = power_of_two_tiles(nodes, bricks, lit);
     EXPECT_EQ(bytes, forest.cost_bytes);
     EXPECT_LE(double(bytes), mib * 1024 * 1024);
