@@ -86,22 +86,23 @@ void render_command(const RenderOptions& options) {
   const FloatImage linear = linear_image(result.image);
   const bool find_exposure = !opened.scene.exposure_ev;
   if (find_exposure) opened.scene.exposure_ev = exposure_from(linear, result.image.optical_depth);
-  const ByteImage shown =
-      is_linear(format) ? ByteImage()
-                        : to_display(linear, *opened.scene.exposure_ev, opened.scene.tone_map,
-                                     opened.scene.dither);
+  const ByteImage shown = is_linear(format)
+                              ? ByteImage()
+                              : to_display(linear, *opened.scene.exposure_ev, opened.scene.tone_map,
+                                           opened.scene.dither);
   const std::string error = error_line(result.error);
-  pictures.write(file.temporary(), format, shown, linear,
-                 {{"nephoscope:scene", write_scene(opened.scene, fs::absolute(output).parent_path())},
-                  {"nephoscope:error", error},
-                  {"nephoscope:assumptions", joined(opened.assumptions)},
-                  {"nephoscope:version", NEPHO_VERSION}});
+  pictures.write(
+      file.temporary(), format, shown, linear,
+      {{"nephoscope:scene", write_scene(opened.scene, fs::absolute(output).parent_path())},
+       {"nephoscope:error", error},
+       {"nephoscope:assumptions", joined(opened.assumptions)},
+       {"nephoscope:version", NEPHO_VERSION}});
   file.commit();
   print_result(output, opened, error, find_exposure);
   if (options.explain)
-    std::printf("%s", explanation(opened, result, context->description(),
-                                  PictureFiles::module_loaded())
-                          .c_str());
+    std::printf(
+        "%s",
+        explanation(opened, result, context->description(), PictureFiles::module_loaded()).c_str());
 }
 
 }  // namespace nepho

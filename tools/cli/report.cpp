@@ -74,14 +74,14 @@ std::string explanation(const OpenedScene& opened, const RenderResult& result,
   list(out, "modules loaded:", modules);
   out << "volumes:\n";
   for (const VolumeReport& v : report.volumes)
-    out << format("  %s: %llu nodes, %llu bricks, %llu constant, %llu empty, %llu sun tiles, "
-                  "level %d of %d\n",
-                  v.name.c_str(), static_cast<unsigned long long>(v.nodes),
-                  static_cast<unsigned long long>(v.bricks),
-                  static_cast<unsigned long long>(v.constant_nodes),
-                  static_cast<unsigned long long>(v.empty_nodes),
-                  static_cast<unsigned long long>(v.sun_tiles), v.finest_level_used,
-                  v.finest_level);
+    out << format(
+        "  %s: %llu nodes, %llu bricks, %llu constant, %llu empty, %llu sun tiles, "
+        "level %d of %d\n",
+        v.name.c_str(), static_cast<unsigned long long>(v.nodes),
+        static_cast<unsigned long long>(v.bricks),
+        static_cast<unsigned long long>(v.constant_nodes),
+        static_cast<unsigned long long>(v.empty_nodes),
+        static_cast<unsigned long long>(v.sun_tiles), v.finest_level_used, v.finest_level);
   for (const auto& source : opened.sources)
     for (const std::string& fact : source->info().facts)
       out << "  " << source->info().name << ": " << fact << '\n';

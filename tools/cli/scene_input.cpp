@@ -23,8 +23,7 @@ std::string ending_of(const fs::path& path) {
 }
 
 // "x,y,z" in the scene's local metres, or "geo:LAT,LON,HEIGHT".
-glm::dvec3 point_value(const std::string& option, const std::string& text,
-                       const Placement& frame) {
+glm::dvec3 point_value(const std::string& option, const std::string& text, const Placement& frame) {
   constexpr const char* shape = "x,y,z in metres, or geo:LAT,LON,HEIGHT";
   const bool geodetic = text.starts_with("geo:");
   const std::vector<double> v = list_value(option, geodetic ? text.substr(4) : text, 3, shape);
@@ -51,8 +50,7 @@ void apply_light(Scene& scene, const RenderOptions& o) {
     if (std::abs(v[0]) > 360 || std::abs(v[1]) > 90)
       throw Error({"bad value", "--sun", "azimuth to 360 and elevation to 90 degrees",
                    "'" + *o.sun + "'", ""});
-    scene.sun.to_sun =
-        sun_direction(scene_frame(scene), glm::radians(v[0]), glm::radians(v[1]));
+    scene.sun.to_sun = sun_direction(scene_frame(scene), glm::radians(v[0]), glm::radians(v[1]));
   }
   if (o.exposure_ev)
     scene.exposure_ev = number_value("--exposure", *o.exposure_ev, "scene", "exposure_ev");
@@ -88,8 +86,7 @@ void apply_quality(Scene& scene, const RenderOptions& o) {
                          : Light::kOctaves;
   if (o.max_level)
     settings.max_level = integer_value("--max-level", *o.max_level, "render", "max_level");
-  if (o.seed)
-    settings.seed = std::uint64_t(number_value("--seed", *o.seed, "render", "seed"));
+  if (o.seed) settings.seed = std::uint64_t(number_value("--seed", *o.seed, "render", "seed"));
   if (o.probe_pixels)
     settings.probe_pixels =
         integer_value("--probe-pixels", *o.probe_pixels, "render", "probe_pixels");
@@ -102,8 +99,7 @@ InputKind input_kind(const std::string& input) {
     std::error_code failure;
     const fs::file_status status = fs::status(input, failure);
     if (!fs::exists(status)) throw Error({"no such file", input, "", "", ""});
-    if (fs::is_directory(status))
-      throw Error({"cannot read", input, "a file", "a directory", ""});
+    if (fs::is_directory(status)) throw Error({"cannot read", input, "a file", "a directory", ""});
   }
   if (ending_of(input) == ".json") return InputKind::kScene;
   return is_picture_name(input) ? InputKind::kPicture : InputKind::kData;
