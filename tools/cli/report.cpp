@@ -68,7 +68,7 @@ std::string explanation(const OpenedScene& opened, const RenderResult& result,
                         const std::string& context, bool picture_module_used) {
   const RenderReport& report = result.report;
   std::ostringstream out;
-  out << "OpenGL: " << context << "; " << report.device << '\n';
+  out << "device: " << context << "; " << report.device << '\n';
   std::vector<std::string> modules = SourceHost::loaded();
   if (picture_module_used) modules.push_back("nepho_image_oiio (pictures)");
   list(out, "modules loaded:", modules);
