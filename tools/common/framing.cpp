@@ -32,7 +32,8 @@ NodeSummary summary_of(const BrickSource& source, NodeKey key, double time_s) {
 void add_corners(const VolumeInfo& info, NodeKey key, std::vector<glm::dvec3>& points) {
   for (std::uint32_t corner = 0; corner < 8; ++corner) {
     const Index3 sample = Lattice::global_sample(
-        key, {kBrickCells * (corner & 1), kBrickCells * (corner >> 1 & 1), kBrickCells * (corner >> 2)});
+        key,
+        {kBrickCells * (corner & 1), kBrickCells * (corner >> 1 & 1), kBrickCells * (corner >> 2)});
     points.push_back(info.chart->ecef_m({key.root(), info.lattice.q(key.level(), sample)}));
   }
 }
@@ -120,9 +121,8 @@ Camera frame_camera(std::span<const glm::dvec3> points, const LocalAxes& axes,
       std::sin(kViewAzimuth_rad) * axes.east + std::cos(kViewAzimuth_rad) * axes.north;
   glm::dvec3 forward = std::cos(pitch_rad) * horizontal + std::sin(pitch_rad) * axes.up;
 
-  camera.target_m = wish.target_m.value_or(size.x.middle() * axes.east +
-                                           size.y.middle() * axes.north +
-                                           size.z.middle() * axes.up);
+  camera.target_m = wish.target_m.value_or(
+      size.x.middle() * axes.east + size.y.middle() * axes.north + size.z.middle() * axes.up);
   if (wish.eye_m) forward = glm::normalize(camera.target_m - *wish.eye_m);
   camera.up = not_parallel(wish.up.value_or(axes.up), axes.north, forward);
   if (wish.eye_m) {
@@ -135,8 +135,7 @@ Camera frame_camera(std::span<const glm::dvec3> points, const LocalAxes& axes,
   double distance = 0;
   // Perspective moves the middle of the outline off the target: a few turns centre it.
   for (int turn = 0; turn < 4; ++turn) {
-    distance =
-        distance_that_holds(points, camera.target_m, right, upward, forward, tan_x, tan_y);
+    distance = distance_that_holds(points, camera.target_m, right, upward, forward, tan_x, tan_y);
     if (wish.target_m) break;
     const glm::dvec3 eye = camera.target_m - distance * forward;
     Extent across, along;
