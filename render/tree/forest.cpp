@@ -90,10 +90,15 @@ class Refiner {
   }
 
  private:
+  // All volumes share the renderer's textures, so the bill is made out once, for the sums.
   std::uint64_t cost(const std::vector<Counts>& counts) const {
-    std::uint64_t sum = 0;
-    for (const Counts& c : counts) sum += refinement_.cost.bytes(c.nodes, c.bricks, c.lit);
-    return sum;
+    Counts sum;
+    for (const Counts& c : counts) {
+      sum.nodes += c.nodes;
+      sum.bricks += c.bricks;
+      sum.lit += c.lit;
+    }
+    return refinement_.cost.bytes(sum.nodes, sum.bricks, sum.lit);
   }
 
   static void count(Counts& counts, NodeKind kind, int sign) {
