@@ -28,5 +28,8 @@ endforeach()
 
 find_program(NEPHO_CCACHE ccache)
 if(NEPHO_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${NEPHO_CCACHE})
+  # Paths relative to the tree: a copy of it elsewhere (tests/layers, a second clone) compiles from
+  # the same cache. Debug information then names the first copy's folder, line numbers hold.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${NEPHO_CCACHE})
 endif()

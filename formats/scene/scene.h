@@ -18,6 +18,7 @@ struct SourceParameter {
   double number = 0;       // in SI, converted at the door
   std::string text;        // for words ("sphere", "y")
   bool is_text = false;
+  std::string where;  // file, line, column and field, for messages
 };
 
 struct GeodeticPlace {
@@ -33,6 +34,7 @@ struct VolumeSpec {
   std::optional<Phase> phase;          // absent: the source's own
   std::optional<glm::dvec3> co_albedo;
   std::optional<double> time_s;  // absent: the first
+  std::string where;             // file, line, column and field, for messages
 };
 
 struct Camera {
@@ -71,15 +73,28 @@ struct RenderSettings {
   int probe_pixels = 128;  // pixels on which the error line is measured; 0 = none
 };
 
+// What a scene says of its camera and its sun; what is absent is worked out from the volumes.
+struct CameraSpec {
+  std::optional<glm::dvec3> eye_m, target_m, up;  // absent: frames the volumes
+  std::optional<double> vertical_fov_rad;
+};
+struct SunSpec {
+  std::optional<glm::dvec3> to_sun;  // absent: 40 degrees high, behind the camera's left shoulder
+  std::optional<glm::dvec3> irradiance_W_per_m2_nm;
+};
+
 struct Scene {
   std::string name;
+  // Where local metres (x east, y north, z up) are counted from; absent: the first volume's place.
+  std::optional<GeodeticPlace> place;
   std::vector<VolumeSpec> volumes;
-  std::optional<Camera> camera;  // absent: frames the volumes
-  std::optional<Sun> sun;        // absent: 40 degrees high, behind the camera's left shoulder
-  Sky sky;
+  CameraSpec camera;
+  SunSpec sun;
+  std::optional<Sky> sky;  // absent: a clear day's
   RenderSettings render;
   std::optional<double> exposure_ev;  // absent: from the picture
   ToneMap tone_map = ToneMap::kAces;
+  bool dither = false;  // ordered, in 8-bit pictures
 };
 
 }  // namespace nepho

@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 
+#include "bricks/box_chart.h"
 #include "bricks/brick_source.h"
+#include "bricks/shell_chart.h"
 #include "core/log.h"
 
 namespace nepho {
@@ -19,9 +22,6 @@ struct AbiId {
       layout_hash;  // sizes and offsets of what crosses, sanitizer and debug flags, C++ ABI
   char compiler[64];
 };
-
-// Evaluated where it is compiled in: the host's and the module's can differ.
-AbiId this_abi() noexcept;
 
 struct RequestParameter {
   const char* name;
@@ -66,6 +66,69 @@ struct SourceModule {
   // Null on failure, with `error` filled. The caller owns the source and deletes it.
   BrickSource* (*open)(const SourceRequest* request, ModuleError* error);
 };
+
+// FNV-1a over what must agree before a pointer may cross: struct layouts, and the flags that change
+// the standard library's.
+constexpr std::uint64_t layout_hash() noexcept {
+#if defined(__SANITIZE_ADDRESS__)
+  constexpr std::size_t sanitizer = 1;
+#elif defined(__SANITIZE_THREAD__)
+  constexpr std::size_t sanitizer = 2;
+#else
+  constexpr std::size_t sanitizer = 0;
+#endif
+#ifdef NDEBUG
+  constexpr std::size_t assertions = 0;
+#else
+  constexpr std::size_t assertions = 1;
+#endif
+#ifdef _GLIBCXX_DEBUG
+  constexpr std::size_t debug_containers = 1;
+#else
+  constexpr std::size_t debug_containers = 0;
+#endif
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const std::size_t part :
+       {std::size_t(__GXX_ABI_VERSION), std::size_t(_GLIBCXX_USE_CXX11_ABI), sanitizer, assertions,
+        debug_containers,
+        // what the verbs hand over
+        sizeof(BrickSource), sizeof(NodeKey), sizeof(Status), sizeof(BrickView),
+        sizeof(ChannelView), offsetof(ChannelView, codes), offsetof(ChannelView, scale),
+        offsetof(ChannelView, offset), offsetof(ChannelView, max_abs_error), sizeof(NodeSummary),
+        offsetof(NodeSummary, max_extinction_per_m),
+        offsetof(NodeSummary, constant_extinction_per_m),
+        offsetof(NodeSummary, unresolved_variance_per_m2), offsetof(NodeSummary, error_bound_per_m),
+        offsetof(NodeSummary, children), offsetof(NodeSummary, empty),
+        offsetof(NodeSummary, constant), sizeof(VolumeInfo), offsetof(VolumeInfo, chart),
+        offsetof(VolumeInfo, lattice), offsetof(VolumeInfo, finest), offsetof(VolumeInfo, channels),
+        offsetof(VolumeInfo, time_origin_ns), offsetof(VolumeInfo, times_s),
+        offsetof(VolumeInfo, bounds), offsetof(VolumeInfo, co_albedo), offsetof(VolumeInfo, phase),
+        offsetof(VolumeInfo, source_bytes), offsetof(VolumeInfo, assumptions),
+        offsetof(VolumeInfo, facts), sizeof(ChannelInfo), offsetof(ChannelInfo, name),
+        offsetof(ChannelInfo, unit), offsetof(ChannelInfo, code_bits),
+        offsetof(ChannelInfo, max_abs_error), sizeof(Phase), offsetof(Phase, asymmetry),
+        sizeof(Lattice), sizeof(Chart), sizeof(BoxChart), sizeof(ShellChart), sizeof(RootPosition),
+        sizeof(ColumnNames),
+        // what a module is asked
+        sizeof(SourceRequest), offsetof(SourceRequest, files), offsetof(SourceRequest, parameters),
+        offsetof(SourceRequest, placement), offsetof(SourceRequest, io_lock),
+        offsetof(SourceRequest, log_sink), sizeof(RequestParameter),
+        offsetof(RequestParameter, number), offsetof(RequestParameter, unit), sizeof(Placement),
+        offsetof(Placement, axes), sizeof(IoLock), sizeof(ModuleError), offsetof(ModuleError, hint),
+        offsetof(SourceModule, open)})
+    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (part >> 8 * byte & 0xff)) * 0x100000001b3u;
+  return hash;
+}
+
+// `static`, so that it is compiled into each side with that side's flags and never resolved to the
+// other's.
+[[maybe_unused]] static AbiId this_abi() noexcept {
+  AbiId abi = {kContractVersion, layout_hash(), {}};
+  constexpr char compiler[] = "gcc-compatible " __VERSION__;
+  for (std::size_t at = 0; at + 1 < sizeof(abi.compiler) && compiler[at]; ++at)
+    abi.compiler[at] = compiler[at];
+  return abi;
+}
 
 }  // namespace nepho
 

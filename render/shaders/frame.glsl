@@ -12,6 +12,6 @@ bool splits(int volume, int level, int axis) {
 }
 // log2 of the size of one of this level's cells, in cells of the finest level.
 ivec3 cell_shift(int volume, int level) {
-  int packed = volumes[volume].levels[level];
-  return ivec3(packed & 255, packed >> 8 & 255, packed >> 16 & 255);
+  int word = volumes[volume].levels[level];
+  return ivec3(word & 255, word >> 8 & 255, word >> 16 & 255);
 }

@@ -54,7 +54,7 @@ struct Forest {
   std::uint64_t cost_bytes = 0;  // by Refinement::cost, never above the budget
 };
 
-// What one volume costs on the GPU; refinement keeps the sum over volumes under the budget.
+// What nodes, bricks and light tiles of all volumes cost on the GPU; kept under the budget.
 struct TileCost {
   std::uint64_t node_bytes = 16, brick_bytes = 0, sun_bytes = 0, fixed_bytes = 0;
   // Whole textures count: sides are powers of two, grown one at a time. Null: the linear sum of the

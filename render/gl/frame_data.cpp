@@ -1,0 +1,176 @@
+#include "gl/frame_data.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "bricks/box_chart.h"
+#include "bricks/shell_chart.h"
+#include "core/error.h"
+#include "optics/phase_table.h"
+
+namespace nepho::gl {
+namespace {
+
+template <class Number, std::size_t N, class Vector>
+void store(Number (&to)[N], const Vector& from) {
+  for (std::size_t i = 0; i < N; ++i) to[i] = Number(from[int(i)]);
+}
+
+// A direction across `up`, whichever.
+glm::dvec3 across(const glm::dvec3& up) {
+  const glm::dvec3 other = std::abs(up.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  return glm::normalize(glm::cross(up, other));
+}
+
+void set_camera(FrameData& frame, const Camera& camera, const RenderSettings& settings) {
+  const glm::dvec3 forward = glm::normalize(camera.target_m - camera.eye_m);
+  glm::dvec3 right = glm::cross(forward, camera.up);
+  right = glm::length(right) > 1e-9 ? glm::normalize(right) : across(forward);
+  const glm::dvec3 up = glm::cross(right, forward);
+  const double half = std::tan(0.5 * camera.vertical_fov_rad);
+  store(frame.eye_m, camera.eye_m);
+  store(frame.forward, forward);
+  store(frame.right, half * settings.width / settings.height * right);
+  store(frame.up, half * up);
+}
+
+void set_light(FrameData& frame, const RenderRequest& request) {
+  store(frame.to_sun, glm::normalize(request.sun.to_sun));
+  store(frame.sun_irradiance, request.sun.irradiance_W_per_m2_nm);
+  const glm::dvec3 up = glm::normalize(request.sky.up), east = across(up);
+  const glm::dvec3 north = glm::cross(up, east);
+  for (int i = 0; i < 3; ++i) {
+    frame.sky_axes[i] = up[i];
+    frame.sky_axes[3 + i] = east[i];
+    frame.sky_axes[6 + i] = north[i];
+  }
+  store(frame.zenith, request.sky.zenith_W_per_m2_sr_nm);
+  store(frame.horizon, request.sky.horizon_W_per_m2_sr_nm);
+  store(frame.below, request.sky.below_W_per_m2_sr_nm);
+}
+
+// log2 of a cell's size in finest cells, per axis.
+std::array<int, 3> shifts(const Lattice& lattice, int level) {
+  std::array<int, 3> result{};
+  for (std::size_t a = 0; a < 3; ++a)
+    result[a] = std::countr_zero(lattice.cells(lattice.max_level())[a] / lattice.cells(level)[a]);
+  return result;
+}
+
+void set_box(VolumeData& data, const BoxChart& box) {
+  data.chart = 0;
+  data.periodic = (box.periodic().x ? 1 : 0) | (box.periodic().y ? 2 : 0);
+  store(data.origin_m, box.origin_m());
+  for (int axis = 0; axis < 3; ++axis)
+    for (int c = 0; c < 3; ++c) {
+      data.to_cells[3 * axis + c] = data.cells[axis] * box.inverse_edges()[c][axis];
+      data.from_cells[3 * axis + c] = box.edges_m()[axis][c] / data.cells[axis];
+    }
+}
+
+void set_shell(VolumeData& data, FrameData& frame, const ShellChart& shell) {
+  const Ellipsoid& body = shell.body();
+  data.chart = 1;
+  data.radius_m = body.equatorial_m;
+  data.z_scale = body.equatorial_m / body.polar_m;
+  data.bottom_m = shell.bottom_m();
+  data.cell_rad = 0.5 * std::numbers::pi / data.cells[0];
+  data.cell_height_m = shell.thickness_m() / data.cells[2];
+  // The planet's body, below whatever holds fog: the lowest of the shells' grounds.
+  const double ground_m = body.equatorial_m + std::min(0.0, shell.bottom_m());
+  if (frame.ground_radius_m == 0 || ground_m < frame.ground_radius_m) {
+    frame.ground_radius_m = ground_m;
+    frame.ground_z_scale = data.z_scale;
+  }
+}
+
+int phase_row(GpuScene& scene, std::vector<Phase>& rows, const Phase& phase) {
+  const auto same = [&](const Phase& other) {
+    return other.kind == phase.kind && other.effective_radius_m == phase.effective_radius_m &&
+           other.asymmetry == phase.asymmetry;
+  };
+  const auto at = std::ranges::find_if(rows, same);
+  if (at != rows.end()) return int(at - rows.begin());
+  const std::vector<float> row = phase_table(phase);
+  scene.phases.insert(scene.phases.end(), row.begin(), row.end());
+  rows.push_back(phase);
+  return int(rows.size()) - 1;
+}
+
+VolumeData make_volume(GpuScene& scene, const BrickSource& source) {
+  const VolumeInfo& info = source.info();
+  const Lattice& lattice = info.lattice;
+  VolumeData data{};
+  data.max_level = lattice.max_level();
+  data.first_node = int(scene.nodes.size());
+  for (std::size_t a = 0; a < 3; ++a) data.cells[a] = int(lattice.cells(data.max_level)[a]);
+  for (int level = 0; level <= data.max_level; ++level) {
+    const auto [x, y, z] = shifts(lattice, level);
+    const int mask = level < data.max_level ? lattice.split_axes(level) : 0;
+    data.levels[level] = mask << 24 | z << 16 | y << 8 | x;
+  }
+  if (info.chart->kind() == ChartKind::kBox) {
+    scene.has_box = true;
+    set_box(data, dynamic_cast<const BoxChart&>(*info.chart));
+  } else {
+    scene.has_shell = true;
+    set_shell(data, scene.frame, dynamic_cast<const ShellChart&>(*info.chart));
+  }
+  return data;
+}
+
+void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
+  const auto first_node = std::uint32_t(scene.nodes.size());
+  const auto first_brick = std::uint32_t(scene.bricks.size());
+  const auto first_lit = std::uint32_t(scene.lit.size());
+  scene.lit.resize(first_lit + tree.lit_nodes);
+  for (const TreeNode& node : tree.nodes) {
+    NodeRecord record{0, std::uint32_t(node.kind), 0, node.majorant_per_m};
+    if (node.kind == NodeKind::kInner) record.first_child_or_lit = first_node + node.first_child;
+    if (node.kind == NodeKind::kConstant)
+      record.brick_or_constant = std::bit_cast<std::uint32_t>(node.constant_per_m);
+    if (node.kind == NodeKind::kBrick) record.brick_or_constant = first_brick + node.brick;
+    if (node.kind == NodeKind::kConstant || node.kind == NodeKind::kBrick) {
+      record.first_child_or_lit = first_lit + node.lit;
+      const auto [i, j, k] = node.key.ijk();
+      scene.lit[first_lit + node.lit] = {volume, node.key.root(), node.key.level(),
+                                         int(i), int(j),          int(k)};
+    }
+    scene.nodes.push_back(record);
+  }
+  for (const LeafBrick& brick : tree.bricks)
+    scene.bricks.push_back({brick.scale * 65535.0f, brick.offset});
+}
+
+}  // namespace
+
+GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
+  GpuScene scene;
+  const RenderSettings& settings = request.settings;
+  set_camera(scene.frame, request.camera, settings);
+  set_light(scene.frame, request);
+  scene.frame.width = settings.width;
+  scene.frame.height = settings.height;
+  scene.frame.step_voxels = float(settings.step_voxels.value_or(2));
+  scene.frame.tolerance = float(settings.tolerance);
+  const Sky& sky = request.sky;
+  scene.sky = sky.zenith_W_per_m2_sr_nm != glm::dvec3(0) ||
+              sky.horizon_W_per_m2_sr_nm != glm::dvec3(0) ||
+              sky.below_W_per_m2_sr_nm != glm::dvec3(0);
+  std::vector<Phase> rows;
+  for (std::size_t v = 0; v < forest.volumes.size(); ++v) {
+    const RenderVolume& volume = request.volumes[v];
+    VolumeData data = make_volume(scene, *volume.source);
+    data.phase_row = phase_row(scene, rows, volume.phase);
+    data.asymmetry = float(phase_bulk(volume.phase).asymmetry[1]);
+    for (int c = 0; c < 3; ++c) data.albedo[c] = float(1 - volume.co_albedo[c]);
+    if (volume.co_albedo != glm::dvec3(0)) scene.absorbs = true;
+    add_nodes(scene, forest.volumes[v], int(v));
+    scene.volumes.push_back(data);
+  }
+  return scene;
+}
+
+}  // namespace nepho::gl

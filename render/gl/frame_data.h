@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "renderer.h"
+#include "shaders/frame.layout.h"
+#include "tree/forest.h"
+
+namespace nepho::gl {
+
+// Scene and forest as the shaders read them.
+
+static_assert(sizeof(NodeRecord) == 16 && sizeof(BrickRecord) == 8 && sizeof(LitRecord) == 24);
+static_assert(offsetof(FrameData, ground_radius_m) == 192 && sizeof(FrameData) == 280);
+static_assert(offsetof(VolumeData, radius_m) == 168 && offsetof(VolumeData, chart) == 208);
+static_assert(offsetof(VolumeData, levels) == 240 && sizeof(VolumeData) == 384);
+
+struct GpuScene {
+  FrameData frame{};
+  std::vector<VolumeData> volumes;
+  std::vector<NodeRecord> nodes;
+  std::vector<BrickRecord> bricks;
+  std::vector<LitRecord> lit;
+  std::vector<float> phases;  // rows of 1024 x 3: log of the phase function, 1/sr
+  bool has_box = false, has_shell = false, absorbs = false, sky = false;
+};
+
+GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest);
+
+}  // namespace nepho::gl

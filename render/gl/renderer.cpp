@@ -1,0 +1,256 @@
+// forest -> buffers and atlas -> light tiles (sun, sky) -> view -> picture -> error line
+#include "renderer.h"
+
+#include <cmath>
+#include <ctime>
+#include <functional>
+#include <string>
+
+#include "core/error.h"
+#include "gl/atlas.h"
+#include "gl/frame_data.h"
+#include "gl/object.h"
+#include "reference/probe.h"
+#include "tree/forest.h"
+
+extern const char* const nepho_shader_view;
+extern const char* const nepho_shader_light_sun;
+extern const char* const nepho_shader_light_sky;
+extern const char* const nepho_shader_light_fill;
+
+namespace nepho {
+namespace {
+
+// A ray is dropped when it can add no more than this share of what lies behind.
+constexpr float kLeastTransmittance = 1.0f / 8192, kLeastTransmittanceExact = 1e-6f;
+constexpr int kPixelBlock = 256;        // per dispatch, so that a slow device is not held for long
+constexpr int kTilesPerDispatch = 512;  // 729 samples each: within the 65535 groups of OpenGL 4.5
+
+double process_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+class Renderer {
+ public:
+  explicit Renderer(const RenderRequest& request) : request_(request) {}
+  RenderResult run();
+
+ private:
+  bool exact() const { return request_.settings.step_voxels == 0.0; }
+  bool sky_light() const { return scene_.sky; }
+  bool texels8() const;
+  std::string defines(bool lit) const;
+  void timed(const char* name, const std::function<void()>& work);
+  void upload();
+  void light();
+  void light_pass(const gl::Program& program, int samples);
+  void view();
+  void read_back();
+  void report();
+
+  const RenderRequest& request_;
+  Forest forest_;
+  gl::GpuScene scene_;
+  std::array<int, 3> atlas_size_{}, light_size_{};
+  gl::Texture atlas_, light_atlas_, picture_;
+  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_;
+  RenderResult result_;
+};
+
+bool Renderer::texels8() const {
+  const RenderSettings& s = request_.settings;
+  if (s.fetch) return *s.fetch == Fetch::kTexels8;
+  return exact() || (!s.step_voxels && s.tolerance < 2e-3);
+}
+
+void Renderer::timed(const char* name, const std::function<void()>& work) {
+  const double before_s = process_cpu_s();
+  work();
+  glFinish();
+  gl::check_errors(name);
+  result_.report.passes.push_back({name, process_cpu_s() - before_s});
+}
+
+std::string Renderer::defines(bool lit) const {
+  const RenderSettings& s = request_.settings;
+  std::string text;
+  const auto define = [&](const std::string& name, const std::string& value = "1") {
+    text += "#define NEPHO_" + name + " " + value + "\n";
+  };
+  define("VOLUMES", std::to_string(scene_.volumes.size()));
+  define("OCTAVES", std::to_string(s.light == Light::kSingle ? 1 : s.octaves));
+  if (s.light == Light::kSingle) define("SINGLE");
+  if (scene_.has_box) define("BOX");
+  if (scene_.has_shell) define("SHELL");
+  if (texels8()) define("TEXELS8");
+  if (exact()) define("CELL_EXACT");
+  if (!s.step_voxels) define("ADAPTIVE");
+  if (sky_light()) define("SKY_LIGHT");
+  if (scene_.absorbs) define("ABSORPTION");
+  if (lit) define("LIT");
+  define("SUN_STEP", std::to_string(s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0));
+  define("LIGHT_FORMAT", sky_light() ? "rgba16f" : "r16f");
+  return text;
+}
+
+void Renderer::upload() {
+  atlas_size_ = gl::atlas_size(scene_.bricks.size());
+  light_size_ = gl::atlas_size(scene_.lit.size());
+  atlas_ = gl::upload_bricks(forest_, atlas_size_);
+  light_atlas_ = gl::make_texture_3d(light_size_, sky_light() ? GL_RGBA16F : GL_R16F);
+  frame_ = gl::Buffer(&scene_.frame, sizeof(FrameData));
+  volumes_ = gl::Buffer(std::span<const VolumeData>(scene_.volumes));
+  nodes_ = gl::Buffer(std::span<const NodeRecord>(scene_.nodes));
+  bricks_ = gl::Buffer(std::span<const BrickRecord>(scene_.bricks));
+  phases_ = gl::Buffer(std::span<const float>(scene_.phases));
+  lit_ = gl::Buffer(std::span<const LitRecord>(scene_.lit));
+  GLuint binding = 0;
+  for (const gl::Buffer* buffer : {&frame_, &volumes_, &nodes_, &bricks_, &phases_, &lit_})
+    buffer->bind(binding++);
+  glBindTextureUnit(0, atlas_.id());
+  glBindTextureUnit(1, light_atlas_.id());
+}
+
+// `samples` invocations for each light tile.
+void Renderer::light_pass(const gl::Program& program, int samples) {
+  glUseProgram(program.id());
+  const GLint first = glGetUniformLocation(program.id(), "first_tile");
+  glBindImageTexture(0, light_atlas_.id(), 0, GL_TRUE, 0, GL_READ_WRITE,
+                     sky_light() ? GL_RGBA16F : GL_R16F);
+  const int tiles = int(scene_.lit.size());
+  for (int tile = 0; tile < tiles; tile += kTilesPerDispatch) {
+    const int count = std::min(kTilesPerDispatch, tiles - tile);
+    glUniform1i(first, tile);
+    glDispatchCompute(GLuint((count * samples + 63) / 64), 1, 1);
+  }
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void Renderer::light() {
+  if (scene_.lit.empty()) return;
+  const std::string switches = defines(false);
+  timed("sun depth",
+        [&] { light_pass(gl::compile("light_sun", nepho_shader_light_sun, switches), 729); });
+  if (!sky_light()) return;
+  timed("sky visibility", [&] {
+    light_pass(gl::compile("light_sky", nepho_shader_light_sky, switches), 125);
+    light_pass(gl::compile("light_fill", nepho_shader_light_fill, switches), 729);
+  });
+}
+
+void Renderer::view() {
+  GLuint id = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &id);
+  picture_ = gl::Texture(id);
+  const int width = request_.settings.width, height = request_.settings.height;
+  glTextureStorage2D(id, 1, GL_RGBA32F, width, height);
+  const gl::Program program = gl::compile("view", nepho_shader_view, defines(true));
+  glUseProgram(program.id());
+  glBindImageTexture(0, id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  const GLint first = glGetUniformLocation(program.id(), "first_pixel");
+  for (int y = 0; y < height; y += kPixelBlock)
+    for (int x = 0; x < width; x += kPixelBlock) {
+      const int w = std::min(kPixelBlock, width - x), h = std::min(kPixelBlock, height - y);
+      glUniform2i(first, x, y);
+      glDispatchCompute(GLuint((w + 7) / 8), GLuint((h + 7) / 8), 1);
+    }
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void Renderer::read_back() {
+  HdrImage& image = result_.image;
+  image.width = request_.settings.width;
+  image.height = request_.settings.height;
+  const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
+  std::vector<float> rgba(4 * pixels);
+  glGetTextureImage(picture_.id(), 0, GL_RGBA, GL_FLOAT, GLsizei(rgba.size() * sizeof(float)),
+                    rgba.data());
+  image.rgb.resize(3 * pixels);
+  image.optical_depth.resize(pixels);
+  for (std::size_t p = 0; p < pixels; ++p) {
+    for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * p + c] = rgba[4 * p + c];
+    image.optical_depth[p] = rgba[4 * p + 3];
+  }
+}
+
+void Renderer::report() {
+  RenderReport& report = result_.report;
+  const auto text = [](GLenum name) {
+    return std::string(reinterpret_cast<const char*>(glGetString(name)));
+  };
+  report.device = text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
+  std::string line;
+  for (const char c : defines(true)) {
+    if (c == '\n') {
+      report.shader_switches.push_back(line.substr(std::string("#define NEPHO_").size()));
+      line.clear();
+    } else {
+      line += c;
+    }
+  }
+  if (!scene_.has_shell)
+    report.left_out.push_back("curved walls: no volume is on a planet's shell");
+  if (!scene_.has_box) report.left_out.push_back("flat walls: no volume is in a box");
+  if (!sky_light())
+    report.left_out.push_back("sky visibility: the sky is black; light tiles hold one channel");
+  if (!scene_.absorbs) report.left_out.push_back("absorption: every co-albedo is 0");
+  if (scene_.lit.empty()) report.left_out.push_back("light passes: nothing scatters");
+  report.atlas_bytes = 2 * gl::texels(atlas_size_);
+  report.sun_bytes = (sky_light() ? 8 : 2) * gl::texels(light_size_);
+  report.node_bytes = scene_.nodes.size() * sizeof(NodeRecord) +
+                      scene_.bricks.size() * sizeof(BrickRecord) +
+                      scene_.lit.size() * sizeof(LitRecord);
+  report.staging_bytes = scene_.bricks.size() * sizeof(LeafBrick);
+  report.image_bytes =
+      16 * std::uint64_t(request_.settings.width) * std::uint64_t(request_.settings.height);
+  for (const VolumeTree& tree : forest_.volumes) {
+    const VolumeInfo& info = tree.source->info();
+    VolumeReport volume;
+    volume.name = info.name;
+    volume.nodes = tree.nodes.size();
+    volume.bricks = tree.bricks.size();
+    volume.sun_tiles = tree.lit_nodes;
+    volume.finest_level_used = tree.finest_level_used;
+    volume.finest_level = info.lattice.max_level();
+    for (const TreeNode& node : tree.nodes) {
+      if (node.kind == NodeKind::kConstant) ++volume.constant_nodes;
+      if (node.kind == NodeKind::kEmpty) ++volume.empty_nodes;
+    }
+    report.volumes.push_back(volume);
+    report.source_bytes += info.source_bytes;
+  }
+}
+
+RenderResult Renderer::run() {
+  Refinement refinement{request_.camera, request_.settings, {}};
+  const Sky& sky = request_.sky;
+  const glm::dvec3 dark(0.0);
+  refinement.cost.total = sky.zenith_W_per_m2_sr_nm != dark || sky.horizon_W_per_m2_sr_nm != dark ||
+                                  sky.below_W_per_m2_sr_nm != dark
+                              ? gl::bytes_with_sky
+                              : gl::bytes_without_sky;
+  timed("refine and read", [&] {
+    forest_ = build_forest(request_.volumes, refinement);
+    scene_ = gl::make_gpu_scene(request_, forest_);
+    scene_.frame.least_transmittance = exact() ? kLeastTransmittanceExact : kLeastTransmittance;
+  });
+  timed("upload", [&] { upload(); });
+  light();
+  timed("view", [&] { view(); });
+  timed("read back", [&] { read_back(); });
+  if (request_.settings.probe_pixels > 0)
+    timed("error probe",
+          [&] { result_.error = estimate_error(request_, forest_, result_.image); });
+  report();
+  return std::move(result_);
+}
+
+}  // namespace
+
+RenderResult render(const RenderRequest& request) {
+  return Renderer(request).run();
+}
+
+}  // namespace nepho

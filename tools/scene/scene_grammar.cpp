@@ -1,0 +1,111 @@
+#include "scene/scene_grammar.h"
+
+namespace nepho {
+namespace {
+
+using enum FieldKind;
+constexpr double kHuge = 1e300;
+constexpr double kLargestImageSide = 16384;  // GL_MAX_TEXTURE_SIZE that every driver here has
+constexpr double kLargestExact = 9007199254740992.0;  // 2^53: integers that a JSON number holds
+
+constexpr FieldGrammar kPointFields[] = {
+    {"lat_deg", kNumber, -90, 90},
+    {"lon_deg", kNumber, -360, 360},
+    {"height_m", kNumber, -6e6, 1e12},
+};
+constexpr ObjectGrammar kPoint{"point", kPointFields};
+
+constexpr FieldGrammar kPlaceFields[] = {
+    {"lat_deg", kNumber, -90, 90},
+    {"lon_deg", kNumber, -360, 360},
+    {"height_m", kNumber, -6e6, 1e12},
+    {"heading_deg", kNumber, -360, 360},
+};
+constexpr ObjectGrammar kPlace{"place", kPlaceFields};
+
+constexpr FieldGrammar kPhaseFields[] = {
+    {"kind", kChoice, 0, 0, "mie|henyey_greenstein"},
+    {"effective_radius_m", kNumber, 1e-7, 1e-3},
+    {"asymmetry", kNumber, -0.9999, 0.9999},
+};
+constexpr ObjectGrammar kPhase{"phase", kPhaseFields};
+
+constexpr FieldGrammar kVolumeFields[] = {
+    {"name", kText},
+    {"source", kText},
+    {"files", kTextList},
+    {"parameters", kParameters},
+    {"place", kObject, 0, 0, {}, &kPlace},
+    {"phase", kObject, 0, 0, {}, &kPhase},
+    {"co_albedo", kVector, 0, 1},
+    {"time_s", kNumber},
+};
+constexpr ObjectGrammar kVolume{"volume", kVolumeFields};
+
+constexpr FieldGrammar kCameraFields[] = {
+    {"look_from_m", kVector, -1e12, 1e12},      {"look_from", kObject, 0, 0, {}, &kPoint},
+    {"look_from_ecef_m", kVector, -1e12, 1e12}, {"look_at_m", kVector, -1e12, 1e12},
+    {"look_at", kObject, 0, 0, {}, &kPoint},    {"look_at_ecef_m", kVector, -1e12, 1e12},
+    {"up_ecef", kVector, -kHuge, kHuge},        {"fov_deg", kNumber, 1e-6, 170},
+    {"fov_rad", kNumber, 1e-8, 2.967},
+};
+constexpr ObjectGrammar kCamera{"camera", kCameraFields};
+
+constexpr FieldGrammar kSunFields[] = {
+    {"azimuth_deg", kNumber, -360, 360},
+    {"elevation_deg", kNumber, -90, 90},
+    {"to_sun_ecef", kVector, -kHuge, kHuge},
+    {"irradiance_W_per_m2_nm", kVector, 0, 1e12},
+};
+constexpr ObjectGrammar kSun{"sun", kSunFields};
+
+constexpr FieldGrammar kSkyFields[] = {
+    {"zenith_W_per_m2_sr_nm", kVector, 0, 1e12},
+    {"horizon_W_per_m2_sr_nm", kVector, 0, 1e12},
+    {"below_W_per_m2_sr_nm", kVector, 0, 1e12},
+    {"up_ecef", kVector, -kHuge, kHuge},
+};
+constexpr ObjectGrammar kSky{"sky", kSkyFields};
+
+constexpr FieldGrammar kImageFields[] = {
+    {"width", kInteger, 1, kLargestImageSide},
+    {"height", kInteger, 1, kLargestImageSide},
+};
+constexpr ObjectGrammar kImage{"image", kImageFields};
+
+constexpr FieldGrammar kRenderFields[] = {
+    {"budget_mib", kNumber, 0.001, 1e6},
+    {"step_voxels", kNumber, 0, 1024},
+    {"tolerance", kNumber, 1e-6, 1},
+    {"fetch", kChoice, 0, 0, "filter|texels8"},
+    {"light", kChoice, 0, 0, "single|octaves"},
+    {"octaves", kInteger, 1, 16},
+    {"pixels_per_voxel", kNumber, 1e-3, 1e6},
+    {"max_level", kInteger, 0, 31},
+    {"seed", kInteger, 0, kLargestExact},
+    {"probe_pixels", kInteger, 0, 1e6},
+};
+constexpr ObjectGrammar kRender{"render", kRenderFields};
+
+constexpr FieldGrammar kSceneFields[] = {
+    {"name", kText},
+    {"place", kObject, 0, 0, {}, &kPlace},
+    {"volumes", kObjectList, 0, 0, {}, &kVolume},
+    {"camera", kObject, 0, 0, {}, &kCamera},
+    {"sun", kObject, 0, 0, {}, &kSun},
+    {"sky", kObject, 0, 0, {}, &kSky},
+    {"image", kObject, 0, 0, {}, &kImage},
+    {"render", kObject, 0, 0, {}, &kRender},
+    {"exposure_ev", kNumber, -60, 60},
+    {"tone_map", kChoice, 0, 0, "aces|none"},
+    {"dither", kChoice, 0, 0, "none|ordered"},
+};
+constexpr ObjectGrammar kScene{"scene", kSceneFields};
+
+}  // namespace
+
+const ObjectGrammar& scene_grammar() {
+  return kScene;
+}
+
+}  // namespace nepho

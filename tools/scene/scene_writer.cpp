@@ -1,0 +1,105 @@
+#include <nlohmann/json.hpp>
+
+#include "scene/scene_file.h"
+
+namespace nepho {
+namespace {
+
+// Ordered, so that a person finds what matters first; its numbers read back to the same bits.
+using Json = nlohmann::ordered_json;
+
+Json vector(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+Json write_place(const GeodeticPlace& place) {
+  return {{"lat_deg", place.latitude_deg},
+          {"lon_deg", place.longitude_deg},
+          {"height_m", place.height_m},
+          {"heading_deg", place.heading_deg}};
+}
+
+std::string write_file_name(const std::string& file, const std::filesystem::path& folder) {
+  const std::filesystem::path absolute = std::filesystem::absolute(file).lexically_normal();
+  const std::filesystem::path relative =
+      absolute.lexically_relative(std::filesystem::absolute(folder).lexically_normal());
+  int ups = 0;
+  for (const std::filesystem::path& part : relative) ups += part == "..";
+  return relative.empty() || ups > 2 ? absolute.string() : relative.string();
+}
+
+// A name that ends in its SI unit, and a number in it (parameter.h).
+Json write_parameter(const SourceParameter& parameter) {
+  if (parameter.is_text) return parameter.text;
+  return parameter.number;
+}
+
+Json write_volume(const VolumeSpec& volume, const std::filesystem::path& folder) {
+  Json out{{"name", volume.name}, {"source", volume.source}};
+  for (const std::string& file : volume.files)
+    out["files"].push_back(write_file_name(file, folder));
+  for (const SourceParameter& parameter : volume.parameters)
+    out["parameters"][parameter.name] = write_parameter(parameter);
+  if (volume.place) out["place"] = write_place(*volume.place);
+  if (volume.phase && volume.phase->kind == PhaseKind::kMie)
+    out["phase"] = {{"kind", "mie"}, {"effective_radius_m", volume.phase->effective_radius_m}};
+  if (volume.phase && volume.phase->kind == PhaseKind::kHenyeyGreenstein)
+    out["phase"] = {{"kind", "henyey_greenstein"}, {"asymmetry", volume.phase->asymmetry}};
+  if (volume.co_albedo) out["co_albedo"] = vector(*volume.co_albedo);
+  if (volume.time_s) out["time_s"] = *volume.time_s;
+  return out;
+}
+
+Json write_camera(const CameraSpec& camera) {
+  Json out = Json::object();
+  if (camera.eye_m) out["look_from_ecef_m"] = vector(*camera.eye_m);
+  if (camera.target_m) out["look_at_ecef_m"] = vector(*camera.target_m);
+  if (camera.up) out["up_ecef"] = vector(*camera.up);
+  if (camera.vertical_fov_rad) out["fov_rad"] = *camera.vertical_fov_rad;
+  return out;
+}
+
+Json write_render(const RenderSettings& settings) {
+  Json out{{"budget_mib", settings.budget_mib}};
+  if (settings.step_voxels)
+    out["step_voxels"] = *settings.step_voxels;
+  else
+    out["tolerance"] = settings.tolerance;
+  if (settings.fetch) out["fetch"] = *settings.fetch == Fetch::kFilter ? "filter" : "texels8";
+  out["light"] = settings.light == Light::kSingle ? "single" : "octaves";
+  out["octaves"] = settings.octaves;
+  out["pixels_per_voxel"] = settings.pixels_per_voxel;
+  out["max_level"] = settings.max_level;
+  out["seed"] = settings.seed;
+  out["probe_pixels"] = settings.probe_pixels;
+  return out;
+}
+
+}  // namespace
+
+std::string write_scene(const Scene& scene, const std::filesystem::path& folder) {
+  Json out;
+  if (!scene.name.empty()) out["name"] = scene.name;
+  if (scene.place) out["place"] = write_place(*scene.place);
+  for (const VolumeSpec& volume : scene.volumes)
+    out["volumes"].push_back(write_volume(volume, folder));
+  out["camera"] = write_camera(scene.camera);
+  out["sun"] = Json::object();
+  if (scene.sun.to_sun) out["sun"]["to_sun_ecef"] = vector(*scene.sun.to_sun);
+  if (scene.sun.irradiance_W_per_m2_nm)
+    out["sun"]["irradiance_W_per_m2_nm"] = vector(*scene.sun.irradiance_W_per_m2_nm);
+  if (scene.sky)
+    out["sky"] = {{"zenith_W_per_m2_sr_nm", vector(scene.sky->zenith_W_per_m2_sr_nm)},
+                  {"horizon_W_per_m2_sr_nm", vector(scene.sky->horizon_W_per_m2_sr_nm)},
+                  {"below_W_per_m2_sr_nm", vector(scene.sky->below_W_per_m2_sr_nm)},
+                  {"up_ecef", vector(scene.sky->up)}};
+  out["image"] = {{"width", scene.render.width}, {"height", scene.render.height}};
+  out["render"] = write_render(scene.render);
+  if (scene.exposure_ev) out["exposure_ev"] = *scene.exposure_ev;
+  out["tone_map"] = scene.tone_map == ToneMap::kNone ? "none" : "aces";
+  if (scene.dither) out["dither"] = "ordered";
+  return out.dump(-1, ' ', true,
+                  Json::error_handler_t::replace);  // ASCII: PNG text chunks are Latin-1
+}
+
+}  // namespace nepho
