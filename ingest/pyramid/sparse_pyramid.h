@@ -61,8 +61,9 @@ class SparsePyramid {
 };
 
 // The finest nodes that no closed form covers, found from the roots down: cost follows the nodes in
-// which something varies.
+// which something varies. Throws std::length_error above `most` nodes.
 std::vector<NodeKey> collect_nodes(const Chart& chart, const Lattice& lattice,
-                                   const std::function<SparsePyramid::Region(NodeKey)>& region);
+                                   const std::function<SparsePyramid::Region(NodeKey)>& region,
+                                   std::size_t most = std::size_t(-1));
 
 }  // namespace nepho
