@@ -9,35 +9,43 @@
 
 namespace nepho {
 
-// The coarse levels of a source, built bottom-up from its non-empty finest samples by the filter of
-// lattice.md 2, and the bounds that go with them. Serves summary() and read(). Memory follows the
-// non-empty nodes: 8^3 owned samples in double per stored node, nothing for constant regions.
+// The coarse levels of a source, built bottom-up from its non-constant finest samples by the filter
+// of lattice.md 2, and the bounds that go with them. Serves summary() and samples().
 //
-//   finest blocks --filter--> level L-1 blocks --filter--> ... --> level 0
-//      |                        |
-//      max/min, error, variance per node, level by level
+//   finest samples --filter--> level L-1 bricks --filter--> ... --> level 0
+//   (asked for again           (stored: 9^3 doubles per node that is not a closed form,
+//    on demand, not stored)     5.8 kB; faces hold the same bits in all nodes that share them)
 //
-// Samples of a block: the 8^3 samples g = 8 (i,j,k) + s, s in 0..7, of which this root is the owner
-// (upper ends of a root: the last block holds 9 on that axis).
+// Memory follows the nodes in which something varies. Everything else is a closed form that the
+// source names: a constant, or one block of a constant in another (a VDB tile in the background).
+// Cost of building: two calls of Field::samples per finest node and about 30 ns per sample more.
 class SparsePyramid {
  public:
-  // What a source knows of a finest-level or coarser region without samples: everything in the
-  // closed box grown by one own-level voxel is one value.
+  // What a source knows of a node without samples, over its closed box grown by one voxel of the
+  // node's own level. Constant: one value. Block (open BoxChart only; elsewhere not offered):
+  // `value` at finest samples low..high (both included, may reach beyond the grown box), `outside`
+  // elsewhere in it. Neither: "something varies", always allowed but then the node costs memory.
   struct Region {
     bool constant = false;
     double value = 0;
+    bool block = false;
+    double outside = 0;
+    Index3 low{}, high{};
+    bool closed_form() const { return constant || block; }
   };
   struct Field {
-    // Finest-level nodes that may hold something other than a constant, ascending keys.
+    // All finest-level nodes whose region is no closed form (without `region`: all whose closed 9^3
+    // samples are not all zero), ascending keys. collect_nodes() makes it from `region`.
     std::vector<NodeKey> nodes;
-    // The finest samples of one such node: 9^3, x fastest, 1/m, >= 0 and finite. Thread-safe.
+    // The finest samples of one such node: 9^3, x fastest, 1/m, >= 0 and finite. Thread-safe; kept
+    // and called for every read of a finest node.
     std::function<void(NodeKey, double* samples)> samples;
-    // The constant that a node (any level) is, if it is one. Thread-safe. Null: empty elsewhere.
+    // Any node, thread-safe, kept. Null: nodes not listed are zero.
     std::function<Region(NodeKey)> region;
   };
 
-  // Builds in parallel, same bits for any number of threads.
-  SparsePyramid(const Chart& chart, const Lattice& lattice, const Field& field);
+  // Builds in parallel, same bits for any number of threads. Keeps a reference to `chart`.
+  SparsePyramid(const Chart& chart, const Lattice& lattice, Field field);
   ~SparsePyramid();
   SparsePyramid(SparsePyramid&&) noexcept;
   SparsePyramid& operator=(SparsePyramid&&) noexcept;
@@ -51,5 +59,11 @@ class SparsePyramid {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// The finest nodes that no closed form covers, found from the roots down: cost follows the nodes in
+// which something varies. Throws std::length_error above `most` nodes.
+std::vector<NodeKey> collect_nodes(const Chart& chart, const Lattice& lattice,
+                                   const std::function<SparsePyramid::Region(NodeKey)>& region,
+                                   std::size_t most = std::size_t(-1));
 
 }  // namespace nepho

@@ -1,0 +1,433 @@
+#include "pyramid/sparse_pyramid.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "bricks/box_chart.h"
+#include "bricks/quantise.h"
+#include "pyramid/level_filter.h"
+#include "pyramid/touching.h"
+
+// Mistakes for the tests to find, each one that was made or nearly made.
+#if defined(NEPHO_MUTANT_SEAM)
+#define NEPHO_MUTATION_SEAM 1
+#else
+#define NEPHO_MUTATION_SEAM 0
+#endif
+#if defined(NEPHO_MUTANT_DRIFT)
+#define NEPHO_MUTATION_DRIFT 1.02
+#else
+#define NEPHO_MUTATION_DRIFT 1.0
+#endif
+
+namespace nepho {
+namespace {
+
+using Region = SparsePyramid::Region;
+constexpr std::size_t kVolume = kBrickVolume;
+
+// What a stored node knows besides its samples; of the node and all below where not said otherwise.
+struct Record {
+  double least = 0, most = 0;
+  double error = 0;     // sup |own trilinear - finest|
+  double variance = 0;  // mean, this level
+  std::uint8_t children = 0;
+  bool empty = true;  // this level
+};
+
+float decoded_floor(double least) {
+  const double low = least * (1 - 4 * double(std::numeric_limits<float>::epsilon()));
+  const auto f = float(low);
+  return double(f) <= low ? f : std::nextafter(f, 0.0f);
+}
+
+// Mean over the node of the interpolant of its samples: half weight on faces.
+double node_mean(const float* samples) {
+  constexpr auto weight = [](std::size_t s) { return s == 0 || s == kBrickCells ? 0.5 : 1.0; };
+  double sum = 0;
+  for (std::size_t k = 0, at = 0; k < kBrickSamples; ++k)
+    for (std::size_t j = 0; j < kBrickSamples; ++j)
+      for (std::size_t i = 0; i < kBrickSamples; ++i, ++at)
+        sum += weight(i) * weight(j) * weight(k) * double(samples[at]);
+  return sum / (kBrickCells * kBrickCells * kBrickCells);
+}
+
+bool all_zero(const double* samples) {
+  return std::all_of(samples, samples + kVolume, [](double c) { return c == 0; });
+}
+
+template <class Body>
+void parallel(std::size_t count, Body&& body) {
+  tbb::parallel_for(std::size_t{0}, count, std::forward<Body>(body));
+}
+
+}  // namespace
+
+struct SparsePyramid::Impl {
+  struct Level {
+    std::vector<NodeKey> keys;  // ascending
+    std::vector<Record> records;
+    std::vector<double> samples;   // 9^3 per node; none at the finest level
+    std::vector<double> squares;   // while building: sums of c^2
+    std::vector<float> variances;  // while building: unresolved, per sample
+
+    std::optional<std::size_t> find(NodeKey key) const {
+      const auto found = std::ranges::lower_bound(keys, key);
+      if (found == keys.end() || *found != key) return std::nullopt;
+      return std::size_t(found - keys.begin());
+    }
+    const double* at(std::size_t node) const { return &samples[node * kVolume]; }
+  };
+
+  const Chart& chart;
+  Lattice lattice;
+  Field field;
+  std::vector<Level> levels;
+  bool blocks_allowed = false;
+
+  Impl(const Chart& c, const Lattice& l, Field f) : chart(c), lattice(l), field(std::move(f)) {
+    if (const auto* box = dynamic_cast<const BoxChart*>(&chart))
+      blocks_allowed = !box->periodic().x && !box->periodic().y;
+    levels.resize(std::size_t(lattice.max_level()) + 1);
+    levels.back().keys = std::exchange(field.nodes, {});
+    levels.back().records.resize(levels.back().keys.size());
+    summarise_finest();
+    for (int level = lattice.max_level() - 1; level >= 0; --level) build(level);
+    bound_errors();
+  }
+
+  Level& at(int level) { return levels[std::size_t(level)]; }
+  const Level& at(int level) const { return levels[std::size_t(level)]; }
+  bool is_finest(int level) const { return level == lattice.max_level(); }
+
+  Region asked(NodeKey key) const {
+    const Region r = field.region(key);
+    if (r.block && !blocks_allowed)
+      throw std::logic_error("SparsePyramid: a block in a curved or periodic chart");
+    return r;
+  }
+
+  // The closed form of a node that is not stored. Where the source was too careful to call it one,
+  // no stored node lies below it, so that its parts are closed forms, and one and the same.
+  Region region(NodeKey key) const {
+    if (!field.region) return {.constant = true};
+    for (;;) {
+      const Region r = asked(key);
+      if (r.closed_form()) return r;
+      if (is_finest(key.level())) return {.constant = true, .value = r.value};
+      key = key.child(lattice.split_axes(key.level()), 0);
+    }
+  }
+
+  // Samples of any node; `variance` may be null, and counts above the finest level only.
+  void fetch(NodeKey key, double* samples, float* variance) const {
+    const Level& level = at(key.level());
+    const std::optional<std::size_t> node = level.find(key);
+    if (!node) return closed_form_samples(lattice, key, region(key), samples, variance);
+    if (is_finest(key.level())) {
+      field.samples(key, samples);
+      if (variance) std::fill_n(variance, kVolume, 0.0f);
+      return;
+    }
+    std::copy_n(level.at(*node), kVolume, samples);
+    if (variance) std::copy_n(&level.variances[*node * kVolume], kVolume, variance);
+  }
+
+  void summarise_finest() {
+    Level& level = levels.back();
+    parallel(level.keys.size(), [&](std::size_t node) {
+      BrickSamples samples;
+      field.samples(level.keys[node], samples.data());
+      Record& record = level.records[node];
+      const auto [least, most] = std::ranges::minmax(samples);
+      if (!std::ranges::all_of(samples, [](double c) { return c >= 0 && std::isfinite(c); }))
+        throw std::domain_error("SparsePyramid: a finest sample is negative or not finite");
+      record.least = least;
+      record.most = most;
+      record.empty = most == 0;
+    });
+  }
+
+  // Parents of what is stored, and whoever touches them and is no closed form: the filter carries
+  // values across a face, so that a node may hold something on its faces only.
+  std::vector<NodeKey> keys_of(int level) const {
+    std::vector<NodeKey> parents;
+    for (const NodeKey key : at(level + 1).keys)
+      if (const NodeKey parent = lattice.parent(key); parents.empty() || parents.back() != parent)
+        parents.push_back(parent);
+    std::ranges::sort(parents);
+    parents.erase(std::ranges::unique(parents).begin(), parents.end());
+    std::vector<NodeKey> keys = parents;
+    for (const NodeKey parent : parents)
+      for_each_touching(chart, lattice, parent, [&](NodeKey other) { keys.push_back(other); });
+    std::ranges::sort(keys);
+    keys.erase(std::ranges::unique(keys).begin(), keys.end());
+    if (field.region)
+      std::erase_if(keys, [&](NodeKey key) {
+        return !std::ranges::binary_search(parents, key) && asked(key).closed_form();
+      });
+    return keys;
+  }
+
+  void build(int l) {
+    Level& level = at(l);
+    level.keys = keys_of(l);
+    const std::size_t count = level.keys.size();
+    level.samples.assign(count * kVolume, 0.0);
+    level.squares.assign(count * kVolume, 0.0);
+    parallel(count, [&](std::size_t node) { gather_children(level, node); });
+    at(l + 1).variances = {};
+    parallel(count, [&](std::size_t node) { merge_faces(level, node); });
+    if (!field.region) drop_zeros(l);
+    level.records.resize(level.keys.size());
+    level.variances.resize(level.keys.size() * kVolume);
+    parallel(level.keys.size(), [&](std::size_t node) { summarise(level, node); });
+    level.squares = {};
+  }
+
+  void gather_children(Level& level, std::size_t node) const {
+    const NodeKey key = level.keys[node];
+    const SplitMask mask = lattice.split_axes(key.level());
+    BrickSamples samples;
+    std::array<float, kVolume> variance;
+    for (SplitMask octant = 0; octant <= kSplitXyz; ++octant) {
+      if (octant & ~mask) continue;
+      const NodeKey child = key.child(mask, octant);
+      fetch(child, samples.data(), variance.data());
+      if (all_zero(samples.data())) continue;
+      add_child(samples.data(), variance.data(), owned_hats(chart, lattice, child), mask, octant,
+                {&level.samples[node * kVolume], &level.squares[node * kVolume]});
+    }
+  }
+
+  // Turns sums into means, in place: each sample by the first stored node that holds it, for all
+  // that hold it. A node that is a closed form reaches one voxel beyond itself, so that its value
+  // holds on the shared face.
+  void merge_faces(Level& level, std::size_t node) const {
+    const NodeKey key = level.keys[node];
+    const HatWeights hats = whole_hats(chart, lattice, key);
+    Closed closed;
+    const Touching touching(chart, lattice, key, [&](NodeKey other) { return level.find(other); });
+    for (std::uint32_t k = 0; k < kBrickSamples; ++k)
+      for (std::uint32_t j = 0; j < kBrickSamples; ++j)
+        for (std::uint32_t i = 0; i < kBrickSamples; ++i) {
+          const std::uint32_t own = i + kBrickSamples * (j + kBrickSamples * k);
+          TouchList places = touching.places({i, j, k});
+          if (NEPHO_MUTATION_SEAM) places.keep([&](const Touch& p) { return p.node == node; });
+          // A periodic axis one node long holds a sample twice.
+          const auto first =
+              std::ranges::find_if(places, [](const Touch& p) { return p.node.has_value(); });
+          if (first->node != node || first->offset != own) continue;
+          const double volume = hats.horizontal[i + kBrickSamples * j] * hats.vertical[k];
+          const auto [mean, square] = merged(level, places, volume, closed);
+          for (const Touch& place : places) {
+            if (!place.node) continue;
+            level.samples[*place.node * kVolume + place.offset] = mean;
+            level.squares[*place.node * kVolume + place.offset] = square;
+          }
+        }
+  }
+
+  // Regions of a node's neighbours, each asked for once.
+  using Closed = std::vector<std::pair<NodeKey, Region>>;
+  const Region& closed_region(NodeKey key, Closed& closed) const {
+    for (const auto& [known, r] : closed)
+      if (known == key) return r;
+    return closed.emplace_back(key, region(key)).second;
+  }
+
+  std::pair<double, double> merged(const Level& level, const TouchList& places, double volume,
+                                   Closed& closed) const {
+    double sum = 0, square = 0;
+    for (const Touch& place : places) {
+      if (!place.node) {
+        const Region& r = closed_region(place.key, closed);
+        if (r.constant) return {r.value, r.value * r.value};
+        BrickSamples samples;
+        std::array<float, kVolume> variance;
+        closed_form_samples(lattice, place.key, r, samples.data(), variance.data());
+        const double c = samples[place.offset];
+        return {c, c * c + double(variance[place.offset])};
+      }
+      sum += level.samples[*place.node * kVolume + place.offset];
+      square += level.squares[*place.node * kVolume + place.offset];
+    }
+    return {sum / volume * NEPHO_MUTATION_DRIFT, square / volume};
+  }
+
+  // Without `region`, neighbours were taken in on suspicion.
+  void drop_zeros(int l) {
+    Level& level = at(l);
+    std::size_t kept = 0;
+    std::vector<NodeKey> parents;
+    for (const NodeKey key : at(l + 1).keys) parents.push_back(lattice.parent(key));
+    std::ranges::sort(parents);
+    for (std::size_t node = 0; node < level.keys.size(); ++node) {
+      const double* samples = level.at(node);
+      if (all_zero(samples) && !std::ranges::binary_search(parents, level.keys[node])) continue;
+      std::copy_n(samples, kVolume, &level.samples[kept * kVolume]);
+      std::copy_n(&level.squares[node * kVolume], kVolume, &level.squares[kept * kVolume]);
+      level.keys[kept++] = level.keys[node];
+    }
+    level.keys.resize(kept);
+    level.samples.resize(kept * kVolume);
+    level.samples.shrink_to_fit();
+  }
+
+  void summarise(Level& level, std::size_t node) {
+    const NodeKey key = level.keys[node];
+    const double* samples = level.at(node);
+    Record& record = level.records[node];
+    for (std::size_t at = node * kVolume; at < (node + 1) * kVolume; ++at)
+      level.variances[at] =
+          float(std::max(0.0, level.squares[at] - level.samples[at] * level.samples[at]));
+    const auto [least, most] = std::minmax_element(samples, samples + kVolume);
+    record.least = *least;
+    record.most = *most;
+    record.empty = *most == 0;
+    record.variance = node_mean(&level.variances[node * kVolume]);
+#ifdef NEPHO_MUTANT_NOT_GROWN
+    record.most = 0;  // what lies below, and not what the filter carried in from the neighbours
+#endif
+    const SplitMask mask = lattice.split_axes(key.level());
+    for (SplitMask octant = 0; octant <= kSplitXyz; ++octant) {
+      if (octant & ~mask) continue;
+      const Record child = record_of(key.child(mask, octant));
+      record.least = std::min(record.least, child.least);
+      record.most = std::max(record.most, child.most);
+      if (!child.empty || child.children) record.children |= std::uint8_t(1u << octant);
+    }
+  }
+
+  Record record_of(NodeKey key) const {
+    const Level& level = at(key.level());
+    if (const auto node = level.find(key)) return level.records[*node];
+    const Region r = region(key);
+    Record record;
+    if (r.constant) {
+      record.least = record.most = r.value;
+      record.empty = r.value == 0;
+      if (!record.empty && !is_finest(key.level())) record.children = octants(key.level());
+      return record;
+    }
+    // A block: its two values bound all levels, and their difference any interpolant's error.
+    BrickSamples samples;
+    std::array<float, kVolume> variance;
+    closed_form_samples(lattice, key, r, samples.data(), variance.data());
+    std::tie(record.least, record.most) = std::minmax(r.value, r.outside);
+    record.empty = all_zero(samples.data());
+    record.variance = node_mean(variance.data());
+    if (is_finest(key.level())) return record;
+    record.error = record.most - record.least;
+    // A sample inside a child at any level is inside the hat of one of its own samples.
+    const SplitMask mask = lattice.split_axes(key.level());
+    for (SplitMask octant = 0; octant <= kSplitXyz; ++octant) {
+      if (octant & ~mask) continue;
+      const NodeKey child = key.child(mask, octant);
+      closed_form_samples(lattice, child, r, samples.data(), nullptr);
+      if (!all_zero(samples.data())) record.children |= std::uint8_t(1u << octant);
+    }
+    return record;
+  }
+
+  std::uint8_t octants(int level) const {
+    const SplitMask mask = lattice.split_axes(level);
+    unsigned bits = 0;
+    for (SplitMask octant = 0; octant <= kSplitXyz; ++octant)
+      if (!(octant & ~mask)) bits |= 1u << octant;
+    return std::uint8_t(bits);
+  }
+
+  // The difference of two nested trilinear fields is greatest at a finest sample: exact. Each node
+  // that ends a branch (finest, or a closed form) is held against all its ancestors.
+  void bound_errors() {
+    for (int l = 0; l < lattice.max_level(); ++l) {
+      const std::size_t ancestors = std::size_t(l) + 1, count = at(l).keys.size();
+      std::vector<double> worst(count * ancestors, 0.0);
+      parallel(count,
+               [&](std::size_t node) { compare_ends(at(l).keys[node], &worst[node * ancestors]); });
+      for (std::size_t node = 0; node < count; ++node) {
+        NodeKey key = at(l).keys[node];
+        for (int a = l; a >= 0; --a) {
+          double& error = at(a).records[*at(a).find(key)].error;
+          error = std::max(error, worst[node * ancestors + std::size_t(a)]);
+          if (a > 0) key = lattice.parent(key);
+        }
+      }
+    }
+  }
+
+  void compare_ends(NodeKey key, double* worst) const {
+    const SplitMask mask = lattice.split_axes(key.level());
+    for (SplitMask octant = 0; octant <= kSplitXyz; ++octant) {
+      if (octant & ~mask) continue;
+      const NodeKey child = key.child(mask, octant);
+      const bool stored = at(child.level()).find(child).has_value();
+      if (stored && !is_finest(child.level())) continue;
+      BrickSamples low, high;
+      if (stored) {
+        field.samples(child, low.data());
+        high = low;
+      } else {
+        const Region r = region(child);
+        low.fill(r.block ? std::min(r.value, r.outside) : r.value);
+        high.fill(r.block ? std::max(r.value, r.outside) : r.value);
+      }
+      NodeKey ancestor = key;
+      for (int a = key.level(); a >= 0; --a) {
+        BrickSamples own;
+        refine(lattice, ancestor, at(a).at(*at(a).find(ancestor)), child, own.data());
+        for (std::size_t s = 0; s < kVolume; ++s)
+          worst[a] = std::max({worst[a], own[s] - low[s], high[s] - own[s]});
+        if (a > 0) ancestor = lattice.parent(ancestor);
+      }
+    }
+  }
+};
+
+SparsePyramid::SparsePyramid(const Chart& chart, const Lattice& lattice, Field field)
+    : impl_(std::make_unique<Impl>(chart, lattice, std::move(field))) {}
+SparsePyramid::~SparsePyramid() = default;
+SparsePyramid::SparsePyramid(SparsePyramid&&) noexcept = default;
+SparsePyramid& SparsePyramid::operator=(SparsePyramid&&) noexcept = default;
+
+NodeSummary SparsePyramid::summary(NodeKey key) const {
+  const Record record = impl_->record_of(key);
+  NodeSummary summary;
+  summary.min_extinction_per_m = decoded_floor(record.least);
+  summary.max_extinction_per_m = decoded_bound(record.most);
+  summary.constant = record.least == record.most;
+  summary.constant_extinction_per_m = summary.constant ? float(record.most) : 0;
+  summary.unresolved_variance_per_m2 = record.variance;
+  summary.error_bound_per_m = record.error;
+  summary.children = record.children;
+  summary.empty = record.empty;
+  return summary;
+}
+
+void SparsePyramid::samples(NodeKey key, double* samples) const {
+  impl_->fetch(key, samples, nullptr);
+#ifdef NEPHO_MUTANT_FLIP
+  if (key.level() == 1)
+    for (std::size_t k = 0; k < kBrickCells / 2; ++k)
+      std::swap_ranges(samples + 81 * k, samples + 81 * (k + 1), samples + 81 * (kBrickCells - k));
+#endif
+}
+
+std::uint64_t SparsePyramid::bytes() const {
+  std::uint64_t bytes = sizeof(Impl) + impl_->levels.capacity() * sizeof(Impl::Level);
+  for (const Impl::Level& level : impl_->levels)
+    bytes += level.keys.capacity() * sizeof(NodeKey) + level.records.capacity() * sizeof(Record) +
+             level.samples.capacity() * sizeof(double) + level.variances.capacity() * sizeof(float);
+  return bytes;
+}
+
+}  // namespace nepho
