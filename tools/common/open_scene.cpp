@@ -14,9 +14,9 @@ namespace {
 // 550, 450 nm behind the air, and the blue that the air made of the rest. Rounded: a background to
 // look at, until the atmosphere is computed.
 constexpr glm::dvec3 kSunIrradiance_W_per_m2_nm{1.42, 1.50, 1.45};
-constexpr glm::dvec3 kZenith_W_per_m2_sr_nm{0.028, 0.058, 0.125};
-constexpr glm::dvec3 kHorizon_W_per_m2_sr_nm{0.125, 0.165, 0.215};
-constexpr glm::dvec3 kBelow_W_per_m2_sr_nm{0.050, 0.055, 0.060};
+constexpr glm::dvec3 kZenith_W_per_m2_sr_nm{0.019, 0.041, 0.092};
+constexpr glm::dvec3 kHorizon_W_per_m2_sr_nm{0.072, 0.098, 0.132};
+constexpr glm::dvec3 kBelow_W_per_m2_sr_nm{0.034, 0.038, 0.042};
 
 std::string listed(const std::vector<double>& times_s) {
   std::string text;
