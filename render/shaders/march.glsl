@@ -9,10 +9,10 @@ Walk walks[NEPHO_VOLUMES];
 
 layout(std430, binding = 6) buffer OverrunBuffer { uint overruns; };
 
-// `unfinished`: a loop's own condition, after it. Written through memory, so that no compiler
-// concludes that a finished loop has finished.
-void count_overrun(bool unfinished) {
-  if (unfinished) atomicAdd(overruns, 1u);
+// `ended` is set in a loop's body where its condition is about to fail. (The condition itself, asked
+// again after the loop, came out wrong on llvmpipe.)
+void count_overrun(int ended) {
+  if (ended == 0) atomicAdd(overruns, 1u);
 }
 
 float texel8(sampler3D map, vec3 at) {
@@ -169,6 +169,7 @@ float optical_depth_ahead() {
   float end_m, t = begin_walks(end_m), tau = 0.0;
   if (t >= FAR) return end_m < FAR ? OPAQUE : 0.0;
   float leave = 0.0;
+  int ended = t < end_m ? 0 : 1;
   while (leave < FAR && t < end_m && tau <= 1e4) {
     bool empty, smooth_;
     leave = settle_walks(t, empty, smooth_);
@@ -201,7 +202,8 @@ float optical_depth_ahead() {
       }
     }
     t = end;
+    if (leave >= FAR || t >= end_m || tau > 1e4) ended = 1;
   }
-  count_overrun(leave < FAR && t < end_m && tau <= 1e4);
+  count_overrun(ended);
   return end_m < FAR ? OPAQUE : min(tau, OPAQUE);
 }

@@ -82,6 +82,7 @@ Seen see() {
   bool lit = false;
   vec3 s0 = vec3(0.0);
   float end = 0.0;
+  int ended = t < end_m ? 0 : 1;
   while (end < FAR && t < end_m && seen.transmittance >= frame.least_transmittance) {
     bool empty, smooth_;
     end = settle_walks(t, empty, smooth_);
@@ -97,8 +98,9 @@ Seen see() {
       march_segment(seen, t, stop, smooth_, s0);
     }
     t = stop;
+    if (end >= FAR || t >= end_m || seen.transmittance < frame.least_transmittance) ended = 1;
   }
-  count_overrun(end < FAR && t < end_m && seen.transmittance >= frame.least_transmittance);
+  count_overrun(ended);
   float sine = float(dot(ray_direction, dvec3(frame.sky_axes[0], frame.sky_axes[1], frame.sky_axes[2])));
   for (int c = 0; c < 3; ++c)
     seen.radiance[c] += seen.transmittance * (end_m < FAR ? frame.below[c]
