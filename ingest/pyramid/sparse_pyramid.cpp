@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "bricks/box_chart.h"
-#include "bricks/quantise.h"
 #include "pyramid/level_filter.h"
+#include "pyramid/record.h"
 #include "pyramid/touching.h"
 
 // Mistakes for the tests to find, each one that was made or nearly made.
@@ -34,36 +33,6 @@ namespace {
 using Region = SparsePyramid::Region;
 constexpr std::size_t kVolume = kBrickVolume;
 
-// What a stored node knows besides its samples; of the node and all below where not said otherwise.
-struct Record {
-  double least = 0, most = 0;
-  double error = 0;     // sup |own trilinear - finest|
-  double variance = 0;  // mean, this level
-  std::uint8_t children = 0;
-  bool empty = true;  // this level
-};
-
-float decoded_floor(double least) {
-  const double low = least * (1 - 4 * double(std::numeric_limits<float>::epsilon()));
-  const auto f = float(low);
-  return double(f) <= low ? f : std::nextafter(f, 0.0f);
-}
-
-// Mean over the node of the interpolant of its samples: half weight on faces.
-double node_mean(const float* samples) {
-  constexpr auto weight = [](std::size_t s) { return s == 0 || s == kBrickCells ? 0.5 : 1.0; };
-  double sum = 0;
-  for (std::size_t k = 0, at = 0; k < kBrickSamples; ++k)
-    for (std::size_t j = 0; j < kBrickSamples; ++j)
-      for (std::size_t i = 0; i < kBrickSamples; ++i, ++at)
-        sum += weight(i) * weight(j) * weight(k) * double(samples[at]);
-  return sum / (kBrickCells * kBrickCells * kBrickCells);
-}
-
-bool all_zero(const double* samples) {
-  return std::all_of(samples, samples + kVolume, [](double c) { return c == 0; });
-}
-
 template <class Body>
 void parallel(std::size_t count, Body&& body) {
   tbb::parallel_for(std::size_t{0}, count, std::forward<Body>(body));
@@ -76,8 +45,7 @@ struct SparsePyramid::Impl {
     std::vector<NodeKey> keys;  // ascending
     std::vector<Record> records;
     std::vector<double> samples;   // 9^3 per node; none at the finest level
-    std::vector<double> squares;   // while building: sums of c^2
-    std::vector<float> variances;  // while building: unresolved, per sample
+    std::vector<float> variances;  // while building: sums of c^2, then unresolved, per sample
 
     std::optional<std::size_t> find(NodeKey key) const {
       const auto found = std::ranges::lower_bound(keys, key);
@@ -99,7 +67,12 @@ struct SparsePyramid::Impl {
     levels.resize(std::size_t(lattice.max_level()) + 1);
     levels.back().keys = std::exchange(field.nodes, {});
     levels.back().records.resize(levels.back().keys.size());
-    summarise_finest();
+    if (lattice.max_level() == 0)
+      for (std::size_t node = 0; node < levels[0].keys.size(); ++node) {
+        BrickSamples samples;
+        field.samples(levels[0].keys[node], samples.data());
+        summarise_finest(node, samples);
+      }
     for (int level = lattice.max_level() - 1; level >= 0; --level) build(level);
     bound_errors();
   }
@@ -141,19 +114,15 @@ struct SparsePyramid::Impl {
     if (variance) std::copy_n(&level.variances[*node * kVolume], kVolume, variance);
   }
 
-  void summarise_finest() {
-    Level& level = levels.back();
-    parallel(level.keys.size(), [&](std::size_t node) {
-      BrickSamples samples;
-      field.samples(level.keys[node], samples.data());
-      Record& record = level.records[node];
-      const auto [least, most] = std::ranges::minmax(samples);
-      if (!std::ranges::all_of(samples, [](double c) { return c >= 0 && std::isfinite(c); }))
-        throw std::domain_error("SparsePyramid: a finest sample is negative or not finite");
-      record.least = least;
-      record.most = most;
-      record.empty = most == 0;
-    });
+  // The finest samples are looked at as they are gathered.
+  void summarise_finest(std::size_t node, const BrickSamples& samples) {
+    Record& record = levels.back().records[node];
+    if (!std::ranges::all_of(samples, [](double c) { return c >= 0 && std::isfinite(c); }))
+      throw std::domain_error("SparsePyramid: a finest sample is negative or not finite");
+    const auto [least, most] = std::ranges::minmax(samples);
+    record.least = least;
+    record.most = most;
+    record.empty = record.most == 0;
   }
 
   // Parents of what is stored, and whoever touches them and is no closed form: the filter carries
@@ -182,18 +151,16 @@ struct SparsePyramid::Impl {
     level.keys = keys_of(l);
     const std::size_t count = level.keys.size();
     level.samples.assign(count * kVolume, 0.0);
-    level.squares.assign(count * kVolume, 0.0);
+    level.variances.assign(count * kVolume, 0.0f);
     parallel(count, [&](std::size_t node) { gather_children(level, node); });
     at(l + 1).variances = {};
     parallel(count, [&](std::size_t node) { merge_faces(level, node); });
     if (!field.region) drop_zeros(l);
     level.records.resize(level.keys.size());
-    level.variances.resize(level.keys.size() * kVolume);
     parallel(level.keys.size(), [&](std::size_t node) { summarise(level, node); });
-    level.squares = {};
   }
 
-  void gather_children(Level& level, std::size_t node) const {
+  void gather_children(Level& level, std::size_t node) {
     const NodeKey key = level.keys[node];
     const SplitMask mask = lattice.split_axes(key.level());
     BrickSamples samples;
@@ -202,9 +169,11 @@ struct SparsePyramid::Impl {
       if (octant & ~mask) continue;
       const NodeKey child = key.child(mask, octant);
       fetch(child, samples.data(), variance.data());
+      if (is_finest(child.level()))
+        if (const auto place = levels.back().find(child)) summarise_finest(*place, samples);
       if (all_zero(samples.data())) continue;
       add_child(samples.data(), variance.data(), owned_hats(chart, lattice, child), mask, octant,
-                {&level.samples[node * kVolume], &level.squares[node * kVolume]});
+                {&level.samples[node * kVolume], &level.variances[node * kVolume]});
     }
   }
 
@@ -231,7 +200,7 @@ struct SparsePyramid::Impl {
           for (const Touch& place : places) {
             if (!place.node) continue;
             level.samples[*place.node * kVolume + place.offset] = mean;
-            level.squares[*place.node * kVolume + place.offset] = square;
+            level.variances[*place.node * kVolume + place.offset] = float(square);
           }
         }
   }
@@ -258,7 +227,7 @@ struct SparsePyramid::Impl {
         return {c, c * c + double(variance[place.offset])};
       }
       sum += level.samples[*place.node * kVolume + place.offset];
-      square += level.squares[*place.node * kVolume + place.offset];
+      square += double(level.variances[*place.node * kVolume + place.offset]);
     }
     return {sum / volume * NEPHO_MUTATION_DRIFT, square / volume};
   }
@@ -274,7 +243,7 @@ struct SparsePyramid::Impl {
       const double* samples = level.at(node);
       if (all_zero(samples) && !std::ranges::binary_search(parents, level.keys[node])) continue;
       std::copy_n(samples, kVolume, &level.samples[kept * kVolume]);
-      std::copy_n(&level.squares[node * kVolume], kVolume, &level.squares[kept * kVolume]);
+      std::copy_n(&level.variances[node * kVolume], kVolume, &level.variances[kept * kVolume]);
       level.keys[kept++] = level.keys[node];
     }
     level.keys.resize(kept);
@@ -286,9 +255,12 @@ struct SparsePyramid::Impl {
     const NodeKey key = level.keys[node];
     const double* samples = level.at(node);
     Record& record = level.records[node];
-    for (std::size_t at = node * kVolume; at < (node + 1) * kVolume; ++at)
-      level.variances[at] =
-          float(std::max(0.0, level.squares[at] - level.samples[at] * level.samples[at]));
+    for (std::size_t at = node * kVolume; at < (node + 1) * kVolume; ++at) {
+      // Sums in float resolve no less than a millionth: what is constant has no variance.
+      const double square = level.samples[at] * level.samples[at];
+      const double variance = double(level.variances[at]) - square;
+      level.variances[at] = variance > 1e-6 * square ? float(variance) : 0;
+    }
     const auto [least, most] = std::minmax_element(samples, samples + kVolume);
     record.least = *least;
     record.most = *most;
@@ -366,10 +338,12 @@ struct SparsePyramid::Impl {
   }
 
   void compare_ends(NodeKey key, double* worst) const {
-    const SplitMask mask = lattice.split_axes(key.level());
-    for (SplitMask octant = 0; octant <= kSplitXyz; ++octant) {
-      if (octant & ~mask) continue;
-      const NodeKey child = key.child(mask, octant);
+    std::vector<std::pair<NodeKey, const double*>> ancestors;  // itself first
+    for (NodeKey a = key;; a = lattice.parent(a)) {
+      ancestors.emplace_back(a, at(a.level()).at(*at(a.level()).find(a)));
+      if (a.level() == 0) break;
+    }
+    for (const NodeKey child : lattice.children(key)) {
       const bool stored = at(child.level()).find(child).has_value();
       if (stored && !is_finest(child.level())) continue;
       BrickSamples low, high;
@@ -381,13 +355,11 @@ struct SparsePyramid::Impl {
         low.fill(r.block ? std::min(r.value, r.outside) : r.value);
         high.fill(r.block ? std::max(r.value, r.outside) : r.value);
       }
-      NodeKey ancestor = key;
-      for (int a = key.level(); a >= 0; --a) {
+      for (const auto& [ancestor, samples] : ancestors) {
         BrickSamples own;
-        refine(lattice, ancestor, at(a).at(*at(a).find(ancestor)), child, own.data());
-        for (std::size_t s = 0; s < kVolume; ++s)
-          worst[a] = std::max({worst[a], own[s] - low[s], high[s] - own[s]});
-        if (a > 0) ancestor = lattice.parent(ancestor);
+        refine(lattice, ancestor, samples, child, own.data());
+        double& most = worst[ancestor.level()];
+        most = std::max(most, greatest_gap(own, low, high));
       }
     }
   }
@@ -400,17 +372,7 @@ SparsePyramid::SparsePyramid(SparsePyramid&&) noexcept = default;
 SparsePyramid& SparsePyramid::operator=(SparsePyramid&&) noexcept = default;
 
 NodeSummary SparsePyramid::summary(NodeKey key) const {
-  const Record record = impl_->record_of(key);
-  NodeSummary summary;
-  summary.min_extinction_per_m = decoded_floor(record.least);
-  summary.max_extinction_per_m = decoded_bound(record.most);
-  summary.constant = record.least == record.most;
-  summary.constant_extinction_per_m = summary.constant ? float(record.most) : 0;
-  summary.unresolved_variance_per_m2 = record.variance;
-  summary.error_bound_per_m = record.error;
-  summary.children = record.children;
-  summary.empty = record.empty;
-  return summary;
+  return to_summary(impl_->record_of(key));
 }
 
 void SparsePyramid::samples(NodeKey key, double* samples) const {

@@ -264,7 +264,7 @@ TEST(Pyramid, VarianceIsWhatTheFilterLeavesOut) {
       });
     std::printf("measured: %-21s variance off by %.1e of the mean square\n", c.name.c_str(),
                 worst / top);
-    EXPECT_LE(worst, 1e-6 * top) << c.name;
+    EXPECT_LE(worst, 2e-6 * top) << c.name;
   }
 }
 
