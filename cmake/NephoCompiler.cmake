@@ -13,6 +13,9 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 set(NEPHO_MODULE_DIR ${CMAKE_BINARY_DIR}/lib/nephoscope)
 
+# GCC 12 drops the rounding in a pair of double(float(x)) when it vectorises straight-line code
+# (struct {double a, b;} = {double(float(.1)), ...} keeps 0.1): wrong code at plain -O2.
+add_compile_options(-fno-tree-slp-vectorize)
 # The same bits on every machine: no fused multiply-add that the source does not ask for.
 add_compile_options(-Wall -Wextra -Wshadow -Wconversion -ffp-contract=off)
 if(NEPHO_WERROR)
@@ -25,5 +28,8 @@ endforeach()
 
 find_program(NEPHO_CCACHE ccache)
 if(NEPHO_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${NEPHO_CCACHE})
+  # Paths relative to the tree: a copy of it elsewhere (tests/layers, a second clone) compiles from
+  # the same cache. Debug information then names the first copy's folder, line numbers hold.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${NEPHO_CCACHE})
 endif()

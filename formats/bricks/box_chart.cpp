@@ -11,6 +11,12 @@ double hat_cells(std::uint32_t index, std::uint32_t cells) {
   return index == 0 || index == cells ? 0.5 : 1.0;
 }
 
+// Into [0, 1): a hair below 0 is rounded up to 1, which is 0 again.
+double wrapped(double q) {
+  const double fraction = q - std::floor(q);
+  return fraction < 1 ? fraction : 0.0;
+}
+
 struct Ends {
   std::array<std::uint32_t, 2> index;
   int size;
@@ -29,6 +35,8 @@ BoxChart::BoxChart(glm::dvec3 origin_ecef_m, glm::dmat3 edges_m, Periodic period
       glm::length(edges_m[0]) * glm::length(edges_m[1]) * glm::length(edges_m[2]);
   if (!(volume_m3 > 1e-9 * lengths_m3) || !std::isfinite(lengths_m3))
     throw std::invalid_argument("BoxChart: the edge vectors do not span a volume");
+  if (!std::isfinite(origin_m_.x + origin_m_.y + origin_m_.z))
+    throw std::invalid_argument("BoxChart: the origin is not finite");
   inverse_ = glm::inverse(edges_m);
   area_m2_ = glm::length(glm::cross(edges_m[0], edges_m[1]));
   rise_m_ = volume_m3 / area_m2_;
@@ -41,8 +49,8 @@ glm::dvec3 BoxChart::ecef_m(RootPosition position) const {
 
 RootPosition BoxChart::locate(glm::dvec3 ecef_m) const {
   glm::dvec3 q = inverse_ * (ecef_m - origin_m_);
-  if (periodic_.x) q.x -= std::floor(q.x);
-  if (periodic_.y) q.y -= std::floor(q.y);
+  if (periodic_.x) q.x = wrapped(q.x);
+  if (periodic_.y) q.y = wrapped(q.y);
   return {0, q};
 }
 

@@ -67,11 +67,12 @@ class Lattice {
     const Index3& n = cells(level);
     return {double(global[0]) / n[0], double(global[1]) / n[1], double(global[2]) / n[2]};
   }
-  // A position on a wall belongs to the upper node, except at the upper end of the root.
+  // A position on a wall belongs to the upper node, except at the upper end of the root; one
+  // outside, to the nearest node; NaN, to the first (fmax drops it: no undefined conversion).
   NodeKey node_at(int root, glm::dvec3 q, int level) const {
     const Index3 count = nodes(level);
     const auto index = [](double position, std::uint32_t n) {
-      return std::uint32_t(std::clamp(std::floor(position * n), 0.0, n - 1.0));
+      return std::uint32_t(std::fmin(std::fmax(std::floor(position * n), 0.0), n - 1.0));
     };
     return {root, level, index(q.x, count[0]), index(q.y, count[1]), index(q.z, count[2])};
   }

@@ -1,12 +1,15 @@
 #pragma once
 
 #include "bricks/chart.h"
+#include "units/constants.h"
 
 namespace nepho {
 
 struct Ellipsoid {
   double equatorial_m, polar_m;
-  static constexpr Ellipsoid wgs84() { return {6378137.0, 6378137.0 * (1 - 1 / 298.257223563)}; }
+  static constexpr Ellipsoid wgs84() {
+    return {constants::kWgs84Equatorial_m, constants::kWgs84Polar_m};
+  }
   static constexpr Ellipsoid sphere(double radius_m) { return {radius_m, radius_m}; }
 };
 

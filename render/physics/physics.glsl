@@ -4,6 +4,7 @@
 // The common subset: free functions without state, constants only, no swizzle, no texture, no
 // include in the parts; literals are Number(0.5), results OUT(T). PRECISE forbids contraction.
 #include "angles.glsl"
+
 #include "octaves.glsl"
 #include "phase.glsl"
 #include "shell.glsl"

@@ -46,12 +46,21 @@ float ground_distance() {
   return float(max(c / (-b + sqrt(discriminant)), 0.0LF) / stretch);
 }
 
-// Starts all walks; the distance of the first entry, or FAR.
-float begin_walks() {
+// Starts all walks; the distance of the first entry, or FAR where the ground comes first or nothing
+// is met, and that of the ground. A ray that starts outside is moved, in fp64, to its first entry:
+// a float of metres from there resolves thin steps in thick cloud, also for an eye at 1e9 m.
+float begin_walks(out float ground_m) {
   float first = FAR;
-  for (int v = 0; v < NEPHO_VOLUMES; ++v) {
-    walks[v] = begin_walk(v);
-    first = min(first, walks[v].leave_m);
+  for (int moved = 0; moved < 2; ++moved) {
+    first = FAR;
+    for (int v = 0; v < NEPHO_VOLUMES; ++v) {
+      walks[v] = begin_walk(v);
+      first = min(first, walks[v].leave_m);
+    }
+    ground_m = ground_distance();
+    if (ground_m <= first) return FAR;
+    if (first <= 0.0 || first >= FAR) break;
+    if (moved == 0) ray_start += ray_direction * double(first);
   }
   return first;
 }
@@ -121,7 +130,7 @@ float cell_end(float t_m, float end_m, out int sub_steps) {
 // Optical depth from the start to where the ray leaves all charts; `blocked` where the ground is hit.
 const float OPAQUE = 65504.0;  // the largest half float
 float optical_depth_ahead() {
-  float t = begin_walks(), end_m = ground_distance(), tau = 0.0;
+  float end_m, t = begin_walks(end_m), tau = 0.0;
   if (t >= FAR) return end_m < FAR ? OPAQUE : 0.0;
   for (int guard = 0; guard < 1000000 && t < end_m; ++guard) {
     bool empty, smooth_;

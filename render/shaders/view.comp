@@ -21,63 +21,65 @@ void add_step(inout Seen seen, vec3 s0, vec3 s1, float tau) {
   seen.optical_depth += tau;
 }
 
+// Halves a step until its optical depth is under `most`: the source is linear in optical depth within
+// a step, and where a voxel is thick it falls off exponentially. T bounds how many steps there are.
+void limit_step(float t, inout float step_m, float k0, inout float k_mid, inout float k1, float most) {
+  for (int halving = 0; halving < 40; ++halving) {
+    if (simpson_optical_depth(k0, k_mid, k1, step_m) <= most) return;
+    step_m *= 0.5;
+    k1 = k_mid;
+    k_mid = total_extinction_at(t + 0.5 * step_m);
+  }
+}
+
 // One segment in which no volume changes its leaf.
 void march_segment(inout Seen seen, float t, float end, bool smooth_, inout vec3 s0) {
   float k0 = total_extinction_at(t), voxel = cell_length(0.5 * (t + end));
-#if !defined(NEPHO_CELL_EXACT)
-#ifdef NEPHO_ADAPTIVE
-  float h = 2.0 * voxel;
+#ifdef NEPHO_CELL_EXACT
+  const float thickest = 0.05;
+#elif defined(NEPHO_ADAPTIVE)
+  float thickest = clamp(3.0 * sqrt(frame.tolerance), 0.05, 1.0), h = 2.0 * voxel;
 #else
+  const float thickest = 1.0;
   float h = frame.step_voxels * voxel;
-#endif
 #endif
   for (int guard = 0; guard < 65536 && t < end; ++guard) {
 #ifdef NEPHO_CELL_EXACT
-    int sub_steps;
+    int sub_steps = 1;
     float next = smooth_ ? min(t + voxel, end) : cell_end(t, end, sub_steps);
-    if (smooth_) sub_steps = 1;
-    float sub = (next - t) / float(sub_steps);
-    for (int s = 0; s < sub_steps; ++s) {
-      float k_mid = total_extinction_at(t + 0.5 * sub), k1 = total_extinction_at(t + sub);
-      vec3 s1 = total_source_at(t + sub);
-      add_step(seen, s0, s1, simpson_optical_depth(k0, k_mid, k1, sub));
-      s0 = s1;
-      k0 = k1;
-      t += sub;
-    }
-    t = next;
+    float step_m = (next - t) / float(sub_steps);
 #else
-    float next = end - t < 1.25 * h ? end : t + h;
-    float step_m = next - t;
-    float k1 = total_extinction_at(next), k_mid = total_extinction_at(0.5 * (t + next));
+    float step_m = end - t < 1.25 * h ? end - t : h;
+#endif
+    float k_mid = total_extinction_at(t + 0.5 * step_m), k1 = total_extinction_at(t + step_m);
 #ifdef NEPHO_ADAPTIVE
     // Simpson against the trapezium: what the step leaves to its shape, as seen from the eye.
     float doubt = seen.transmittance * step_m * abs(k0 - 2.0 * k_mid + k1) * (1.0 / 6.0);
     if (doubt > 2.0 * frame.tolerance && step_m > 1.01 * voxel) {
-      h = max(0.5 * step_m, voxel);
-      next = t + h;
-      k1 = h == 0.5 * step_m ? k_mid : total_extinction_at(next);
-      k_mid = total_extinction_at(0.5 * (t + next));
-      step_m = h;
-    } else if (doubt < 0.25 * frame.tolerance) {
-      h = 3.0 * voxel;
+      step_m *= 0.5;
+      k1 = k_mid;
+      k_mid = total_extinction_at(t + 0.5 * step_m);
     } else {
-      h = 2.0 * voxel;
+      h = doubt < 0.25 * frame.tolerance ? 3.0 * voxel : 2.0 * voxel;
     }
 #endif
-    vec3 s1 = total_source_at(next);
+    limit_step(t, step_m, k0, k_mid, k1, thickest);
+    // The last step ends on the wall itself: no remainder by rounding.
+    float next_t = end - (t + step_m) < 1e-4 * step_m ? end : t + step_m;
+    vec3 s1 = total_source_at(next_t);
     add_step(seen, s0, s1, simpson_optical_depth(k0, k_mid, k1, step_m));
     s0 = s1;
     k0 = k1;
-    t = next;
-#endif
+    // A float cannot hold a step below its own spacing: then the ray is done with this segment.
+    if (next_t <= t) break;
+    t = next_t;
     if (seen.transmittance < frame.least_transmittance) break;
   }
 }
 
 Seen see() {
   Seen seen = Seen(vec3(0.0), 1.0, 0.0);
-  float t = begin_walks(), end_m = ground_distance();
+  float end_m, t = begin_walks(end_m);
   bool lit = false;
   vec3 s0 = vec3(0.0);
   for (int guard = 0; guard < 1000000 && t < end_m; ++guard) {

@@ -154,5 +154,105 @@ TEST(BoxChart, PeriodicEndsAreOneSample) {
   EXPECT_NEAR(wrapped.q.y, 0.75, 1e-12);
 }
 
+// Affine frames: the map is linear, so q is found by Cramer's rule in long double.
+struct Frame {
+  const char* name;
+  glm::dvec3 origin_m;
+  glm::dmat3 edges_m;
+};
+std::vector<Frame> frames() {
+  const glm::dvec3 earth = geodetic_to_ecef_m(Ellipsoid::wgs84(), 0.9, 0.2, 500);
+  const glm::dmat3 enu = test::east_north_up(0.9, 0.2);
+  const glm::dmat3 box = test::scaled_columns(enu, {6400, 3200, 1600});
+  return {{"free", {0, 0, 0}, test::scaled_columns(glm::dmat3(1.0), {409.6, 409.6, 409.6})},
+          {"rotated", earth, box},
+          {"left-handed", earth, {box[1], box[0], box[2]}},
+          {"mirrored", earth, {-box[0], box[1], box[2]}},
+          {"sheared", earth, {box[0], box[1] + 0.7 * box[0], box[2] - 0.4 * box[0] + box[1]}},
+          {"thin", earth, test::scaled_columns(enu, {64000, 64000, 1})}};
+}
+
+TEST(BoxChart, AnyAffineFrameGoesThereAndBack) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(-0.1, 1.1);
+  for (const Frame& frame : frames()) {
+    const BoxChart chart(frame.origin_m, frame.edges_m);
+    double forward_m = 0, back_m = 0;
+    for (int trial = 0; trial < 20000; ++trial) {
+      const glm::dvec3 q = {uniform(random), uniform(random), uniform(random)};
+      const glm::dvec3 p = chart.ecef_m({0, q});
+      long double off = 0;
+      for (int c = 0; c < 3; ++c) {
+        long double truth = frame.origin_m[c];
+        for (int e = 0; e < 3; ++e)
+          truth += static_cast<long double>(q[e]) * static_cast<long double>(frame.edges_m[e][c]);
+        off = std::hypot(off, static_cast<long double>(p[c]) - truth);
+      }
+      forward_m = std::max(forward_m, double(off));
+      const RootPosition found = chart.locate(p);
+      EXPECT_EQ(found.root, 0);
+      back_m = std::max(back_m, glm::length(chart.ecef_m(found) - p));
+    }
+    const std::string of = std::string(": ") + frame.name;
+    test::report_accuracy("charts", "box ecef_m against long double" + of, forward_m, 5e-9, "m");
+    test::report_accuracy("charts", "box ecef_m(locate(p)) - p" + of, back_m, 5e-9, "m");
+    EXPECT_LE(forward_m, 5e-9);
+    EXPECT_LE(back_m, 5e-9);
+  }
+}
+
+TEST(BoxChart, HatsFillAnyFrame) {
+  for (const Frame& frame : frames()) {
+    const BoxChart chart(frame.origin_m, frame.edges_m);
+    const double volume_m3 = std::abs(glm::determinant(frame.edges_m));
+    double horizontal = 0, vertical = 0;
+    for (std::uint32_t i = 0; i <= 16; ++i)
+      for (std::uint32_t j = 0; j <= 8; ++j)
+        horizontal += chart.hat_horizontal({0, i, j}, {16, 8, 32});
+    for (std::uint32_t k = 0; k <= 32; ++k) vertical += chart.hat_vertical(k, {16, 8, 32});
+    EXPECT_NEAR(horizontal * vertical / volume_m3, 1, 1e-12) << frame.name;
+  }
+}
+
+TEST(BoxChart, RefusesWhatSpansNoVolume) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const glm::dmat3 unit(1.0);
+  EXPECT_NO_THROW(BoxChart({}, unit));
+  EXPECT_NO_THROW(BoxChart({}, 1e-3 * unit));
+  EXPECT_NO_THROW(BoxChart({}, test::scaled_columns(unit, {1e6, 1e6, 1e-3})));  // thin, not flat
+  for (const glm::dmat3& edges :
+       {glm::dmat3(0.0), glm::dmat3{{1, 0, 0}, {0, 1, 0}, {0, 0, 0}},
+        glm::dmat3{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}},      // rank 2
+        glm::dmat3{{1, 0, 0}, {1, 1e-10, 0}, {0, 0, 1}},  // as good as parallel
+        glm::dmat3{{nan, 0, 0}, {0, 1, 0}, {0, 0, 1}}, inf * unit,
+        1e150 * unit})  // its volume is not a number that can be had
+    EXPECT_THROW(BoxChart({}, edges), std::invalid_argument);
+  EXPECT_THROW(BoxChart({nan, 0, 0}, unit), std::invalid_argument);
+  EXPECT_THROW(BoxChart({0, -inf, 0}, unit), std::invalid_argument);
+  EXPECT_THROW(ShellChart(Ellipsoid::wgs84(), 0, 0), std::invalid_argument);
+  EXPECT_THROW(ShellChart(Ellipsoid::wgs84(), 0, nan), std::invalid_argument);
+}
+
+TEST(BoxChart, WrapsIntoHalfOpenUnit) {
+  const BoxChart chart({}, glm::dmat3(1.0), {.x = true, .y = false});
+  for (const double x : {-1e-300, -1e-17, -1.0, 0.0, 1.0, 2.0, 1e15, -1e15}) {
+    const RootPosition p = chart.locate({x, x, x});
+    EXPECT_GE(p.q.x, 0) << x;
+    EXPECT_LT(p.q.x, 1) << x;
+    EXPECT_EQ(p.q.y, x);
+    EXPECT_EQ(p.q.z, x);
+  }
+  EXPECT_EQ(chart.names({0, 8, 8}, {8, 8, 8}).size(), 2);
+  EXPECT_EQ(chart.names({0, 8, 8}, {8, 8, 8}).owner(), (Column{0, 0, 8}));
+}
+
+// Three splits of a periodic root: both ends' hats together are one whole hat.
+TEST(BoxChart, PeriodicEndsShareOneHat) {
+  const Index3 n = {16, 16, 8};
+  double ends = 0;
+  for (const Column& name : kBox.names({0, 0, 0}, n)) ends += kBox.hat_horizontal(name, n);
+  EXPECT_NEAR(ends / kBox.hat_horizontal({0, 5, 5}, n), 1, 1e-15);
+}
+
 }  // namespace
 }  // namespace nepho

@@ -76,5 +76,13 @@ TEST(Lattice, RefusesWhatAKeyCannotName) {
   EXPECT_THROW(Lattice({SplitMask{0}}), std::invalid_argument);
 }
 
+TEST(Lattice, OutsidePositionsGoToTheNearestNode) {
+  const Lattice lattice(std::vector<SplitMask>(4, kSplitXyz));
+  EXPECT_EQ(lattice.node_at(0, {-1, 0.5, 1}, 4), NodeKey(0, 4, 0, 8, 15));
+  EXPECT_EQ(lattice.node_at(0, {1e300, -1e300, 0}, 4), NodeKey(0, 4, 15, 0, 0));
+  const double nan = std::nan("");
+  EXPECT_EQ(lattice.node_at(0, {nan, nan, nan}, 4), NodeKey(0, 4, 0, 0, 0));
+}
+
 }  // namespace
 }  // namespace nepho

@@ -57,8 +57,8 @@ std::string next_word(std::istream& in, Metadata* metadata) {
 int next_side(std::istream& in, Metadata* metadata, const std::filesystem::path& path,
               const char* format) {
   const std::string word = next_word(in, metadata);
-  const bool digits = !word.empty() && word.size() < 7 &&
-                      word.find_first_not_of("0123456789") == std::string::npos;
+  const bool digits =
+      !word.empty() && word.size() < 7 && word.find_first_not_of("0123456789") == std::string::npos;
   const int side = digits ? std::stoi(word) : 0;
   if (side < 1 || side > kLargestSide) refuse(path, format);
   return side;
@@ -113,7 +113,8 @@ void write_pfm(const std::filesystem::path& path, const FloatImage& image,
                const Metadata& metadata) {
   std::ofstream out = open_output(path);
   // A negative scale means little endian; rows run from the bottom to the top.
-  out << (image.channels == 1 ? "Pf\n" : "PF\n") << image.width << ' ' << image.height << "\n-1.0\n";
+  out << (image.channels == 1 ? "Pf\n" : "PF\n") << image.width << ' ' << image.height
+      << "\n-1.0\n";
   const std::size_t row = std::size_t(image.width) * std::size_t(image.channels);
   for (int y = image.height - 1; y >= 0; --y)
     out.write(reinterpret_cast<const char*>(image.values.data() + std::size_t(y) * row),

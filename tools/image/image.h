@@ -16,7 +16,10 @@ struct Pixels {
 
   Pixels() = default;
   Pixels(int w, int h, int c)
-      : width(w), height(h), channels(c), values(std::size_t(w) * std::size_t(h) * std::size_t(c)) {}
+      : width(w),
+        height(h),
+        channels(c),
+        values(std::size_t(w) * std::size_t(h) * std::size_t(c)) {}
   std::size_t count() const { return std::size_t(width) * std::size_t(height); }
 };
 using FloatImage = Pixels<float>;

@@ -17,9 +17,10 @@ struct Ending {
   const char* text;
   PictureFormat format;
 };
-constexpr std::array kEndings{Ending{".png", PictureFormat::kPng}, Ending{".exr", PictureFormat::kExr},
-                              Ending{".hdr", PictureFormat::kHdr}, Ending{".pfm", PictureFormat::kPfm},
-                              Ending{".ppm", PictureFormat::kPpm}};
+constexpr std::array kEndings{
+    Ending{".png", PictureFormat::kPng}, Ending{".exr", PictureFormat::kExr},
+    Ending{".hdr", PictureFormat::kHdr}, Ending{".pfm", PictureFormat::kPfm},
+    Ending{".ppm", PictureFormat::kPpm}};
 constexpr const char* kModuleFile = "nepho_image_oiio.so";
 constexpr std::size_t kLargestPicture = std::size_t{1} << 30;  // values of a picture that is read
 
@@ -69,20 +70,19 @@ FloatImage read_through_module(const PictureModule& module, const std::filesyste
     FloatImage image;
     Metadata* metadata;
   } target{{}, &metadata};
-  const PictureSink sink{
-      &target,
-      [](void* context, int width, int height, int channels) -> float* {
-        const auto most = kLargestPicture / std::size_t(std::max(1, channels));
-        if (width < 1 || height < 1 || channels < 1 ||
-            std::size_t(width) > most / std::size_t(height))
-          return nullptr;
-        FloatImage& image = static_cast<Target*>(context)->image;
-        image = FloatImage(width, height, channels);
-        return image.values.data();
-      },
-      [](void* context, const char* key, const char* value) {
-        (*static_cast<Target*>(context)->metadata)[key] = value;
-      }};
+  const PictureSink sink{&target,
+                         [](void* context, int width, int height, int channels) -> float* {
+                           const auto most = kLargestPicture / std::size_t(std::max(1, channels));
+                           if (width < 1 || height < 1 || channels < 1 ||
+                               std::size_t(width) > most / std::size_t(height))
+                             return nullptr;
+                           FloatImage& image = static_cast<Target*>(context)->image;
+                           image = FloatImage(width, height, channels);
+                           return image.values.data();
+                         },
+                         [](void* context, const char* key, const char* value) {
+                           (*static_cast<Target*>(context)->metadata)[key] = value;
+                         }};
   char error[1024] = "";
   if (module.read(path.c_str(), want_pixels, &sink, error, sizeof error))
     throw Error({"cannot read", path.string(), "a picture", error, ""});
@@ -133,11 +133,13 @@ void PictureFiles::check_format(const std::filesystem::path& path) const {
 void PictureFiles::write(const std::filesystem::path& path, PictureFormat format,
                          const ByteImage& shown, const FloatImage& linear,
                          const Metadata& metadata) const {
-  PictureView view{linear.width, linear.height, 3, PixelType::kFloat, nullptr, nullptr, nullptr,
-                   nullptr,      0};
+  PictureView view{linear.width, linear.height, 3, PixelType::kFloat, nullptr, nullptr,
+                   nullptr,      nullptr,       0};
   switch (format) {
-    case PictureFormat::kPpm: return write_ppm(path, shown, metadata);
-    case PictureFormat::kPfm: return write_pfm(path, first_three(linear), metadata);
+    case PictureFormat::kPpm:
+      return write_ppm(path, shown, metadata);
+    case PictureFormat::kPfm:
+      return write_pfm(path, first_three(linear), metadata);
     case PictureFormat::kPng:
       view.type = PixelType::kByte;
       view.pixels = shown.values.data();

@@ -36,9 +36,7 @@ class CountingIterator {
   friend bool operator==(const CountingIterator& a, const CountingIterator& b) {
     return a.at_ == b.at_;
   }
-  friend bool operator!=(const CountingIterator& a, const CountingIterator& b) {
-    return !(a == b);
-  }
+  friend bool operator!=(const CountingIterator& a, const CountingIterator& b) { return !(a == b); }
 
  private:
   const char* at_;
@@ -50,7 +48,10 @@ class CountingIterator {
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
   TreeBuilder(std::string_view text, std::string source_name)
-      : text_(text), taken_(text.data()), last_(text.data()), source_name_(std::move(source_name)) {}
+      : text_(text),
+        taken_(text.data()),
+        last_(text.data()),
+        source_name_(std::move(source_name)) {}
 
   CountingIterator begin() { return {text_.data(), &taken_}; }
   CountingIterator end() { return {text_.data() + text_.size(), nullptr}; }
@@ -137,8 +138,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   JsonValue& place(JsonValue value) {
     if (open_.empty()) return root_ = std::move(value);
     JsonValue& parent = *open_.back();
-    if (parent.kind == JsonValue::Kind::kArray)
-      return parent.items.emplace_back(std::move(value));
+    if (parent.kind == JsonValue::Kind::kArray) return parent.items.emplace_back(std::move(value));
     return parent.members.back().value = std::move(value);
   }
   TextPosition token_start() {
@@ -169,12 +169,18 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
 
 const char* kind_name(JsonValue::Kind kind) {
   switch (kind) {
-    case JsonValue::Kind::kNull: return "null";
-    case JsonValue::Kind::kBool: return "true or false";
-    case JsonValue::Kind::kNumber: return "a number";
-    case JsonValue::Kind::kString: return "a text";
-    case JsonValue::Kind::kArray: return "a list";
-    case JsonValue::Kind::kObject: return "an object";
+    case JsonValue::Kind::kNull:
+      return "null";
+    case JsonValue::Kind::kBool:
+      return "true or false";
+    case JsonValue::Kind::kNumber:
+      return "a number";
+    case JsonValue::Kind::kString:
+      return "a text";
+    case JsonValue::Kind::kArray:
+      return "a list";
+    case JsonValue::Kind::kObject:
+      return "an object";
   }
   return "?";
 }

@@ -12,15 +12,23 @@ namespace {
 
 const char* expected_text(FieldKind kind) {
   switch (kind) {
-    case FieldKind::kText: return "a text";
-    case FieldKind::kChoice: return "one of ";
-    case FieldKind::kNumber: return "a number";
-    case FieldKind::kInteger: return "a whole number";
-    case FieldKind::kVector: return "a list of three numbers";
-    case FieldKind::kTextList: return "a text or a list of texts";
+    case FieldKind::kText:
+      return "a text";
+    case FieldKind::kChoice:
+      return "one of ";
+    case FieldKind::kNumber:
+      return "a number";
+    case FieldKind::kInteger:
+      return "a whole number";
+    case FieldKind::kVector:
+      return "a list of three numbers";
+    case FieldKind::kTextList:
+      return "a text or a list of texts";
     case FieldKind::kObject:
-    case FieldKind::kParameters: return "an object";
-    case FieldKind::kObjectList: return "a list of objects";
+    case FieldKind::kParameters:
+      return "an object";
+    case FieldKind::kObjectList:
+      return "a list of objects";
   }
   return "?";
 }
@@ -94,8 +102,8 @@ ObjectReader::ObjectReader(const JsonValue& value, const ObjectGrammar& grammar,
       source_name_(std::move(source_name)),
       path_(std::move(path)) {
   if (value.kind != JsonValue::Kind::kObject)
-    throw Error({path_.empty() ? "not a scene" : "wrong type", where(), "an object", shown(value),
-                 ""});
+    throw Error(
+        {path_.empty() ? "not a scene" : "wrong type", where(), "an object", shown(value), ""});
   for (const JsonValue::Member& member : value.members) check(member);
 }
 
@@ -166,11 +174,13 @@ void ObjectReader::check(const JsonValue::Member& member) const {
     if (!good) refuse_type(value, *known, path);
   };
   switch (known->kind) {
-    case FieldKind::kText: return must(value.kind == Kind::kString);
+    case FieldKind::kText:
+      return must(value.kind == Kind::kString);
     case FieldKind::kChoice:
       return must(value.kind == Kind::kString && is_choice(value.text, known->choices));
     case FieldKind::kNumber:
-    case FieldKind::kInteger: return check_number(value, *known, path);
+    case FieldKind::kInteger:
+      return check_number(value, *known, path);
     case FieldKind::kVector:
       must(value.kind == Kind::kArray && value.items.size() == 3);
       for (std::size_t i = 0; i < 3; ++i)
@@ -183,8 +193,10 @@ void ObjectReader::check(const JsonValue::Member& member) const {
         if (item.kind != Kind::kString) refuse_type(item, *known, path);
       return;
     case FieldKind::kObject:  // its own reader checks the rest
-    case FieldKind::kParameters: return must(value.kind == Kind::kObject);
-    case FieldKind::kObjectList: return must(value.kind == Kind::kArray);
+    case FieldKind::kParameters:
+      return must(value.kind == Kind::kObject);
+    case FieldKind::kObjectList:
+      return must(value.kind == Kind::kArray);
   }
 }
 
@@ -235,8 +247,7 @@ std::vector<ObjectReader> ObjectReader::objects(std::string_view field) const {
 }
 
 void ObjectReader::require(std::string_view field) const {
-  if (!find(field))
-    throw Error({"missing field", where(), "'" + std::string(field) + "'", "", ""});
+  if (!find(field)) throw Error({"missing field", where(), "'" + std::string(field) + "'", "", ""});
 }
 
 void ObjectReader::at_most_one(std::initializer_list<std::string_view> fields) const {

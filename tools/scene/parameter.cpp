@@ -11,7 +11,7 @@ namespace nepho {
 namespace {
 
 struct NamedUnit {
-  std::string text;
+  std::string base, text;  // radius_km: "radius", "km"
   Unit unit;
 };
 
@@ -33,7 +33,8 @@ std::optional<NamedUnit> unit_of_name(const std::string& name) {
     for (char& c : text)
       if (c == '_') c = ' ';
     const std::optional<Unit> unit = try_parse(text);
-    if (unit && unit->dimension != kDimensionless) return NamedUnit{text, *unit};
+    if (unit && unit->dimension != kDimensionless)
+      return NamedUnit{name.substr(0, at), text, *unit};
   }
   return std::nullopt;
 }
@@ -50,13 +51,30 @@ std::optional<double> leading_number(const std::string& text, std::string& rest)
   return value;
 }
 
-SourceParameter number_parameter(const std::string& name, double value, const std::string& where) {
-  SourceParameter result{name, "", value, "", false, where};
-  if (const std::optional<NamedUnit> named = unit_of_name(name)) {
-    result.unit = named->text;
-    result.number = named->unit.to_si(value);
+// The end of a name in SI: "_m", "_kg_per_m3", "_per_m"; "" for a ratio.
+std::string si_ending(const Dimension& d) {
+  std::string above, below;
+  const auto add = [](std::string& side, const char* unit, int power) {
+    side += std::string("_") + unit + (power == 1 ? "" : std::to_string(power));
+  };
+  const std::pair<const char*, int> powers[] = {
+      {"kg", d.kg}, {"m", d.m}, {"s", d.s}, {"K", d.K}, {"rad", d.rad}};
+  for (const auto& [unit, power] : powers) {
+    if (power > 0) add(above, unit, power);
+    if (power < 0) add(below, unit, -power);
   }
-  return result;
+  return above + (below.empty() ? "" : "_per" + below);
+}
+
+SourceParameter in_si(const std::string& base, const Unit& unit, const std::string& unit_text,
+                      double value, const std::string& where) {
+  return {base + si_ending(unit.dimension), unit_text, unit.to_si(value), "", false, where};
+}
+
+SourceParameter number_parameter(const std::string& name, double value, const std::string& where) {
+  const std::optional<NamedUnit> named = unit_of_name(name);
+  if (!named) return {name, "", value, "", false, where};
+  return in_si(named->base, named->unit, named->text, value, where);
 }
 
 SourceParameter unit_parameter(const std::string& name, double value, const std::string& unit_text,
@@ -72,12 +90,7 @@ SourceParameter unit_parameter(const std::string& name, double value, const std:
   const std::optional<NamedUnit> named = unit_of_name(name);
   if (named && named->unit.dimension != unit.dimension)
     throw Error({"wrong unit", where, "a unit like " + named->text, "'" + unit_text + "'", ""});
-  return {name, unit_text, unit.to_si(value), "", false, where};
-}
-
-std::string exact(double value) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+  return in_si(named ? named->base : name, unit, unit_text, value, where);
 }
 
 }  // namespace
@@ -85,13 +98,15 @@ std::string exact(double value) {
 SourceParameter make_parameter(const std::string& name, const JsonValue& value,
                                const std::string& where) {
   switch (value.kind) {
-    case JsonValue::Kind::kNumber: return number_parameter(name, value.number, where);
+    case JsonValue::Kind::kNumber:
+      return number_parameter(name, value.number, where);
     case JsonValue::Kind::kBool:
       return {name, "", value.boolean ? 1.0 : 0.0, "", false, where};
-    case JsonValue::Kind::kString: break;
+    case JsonValue::Kind::kString:
+      break;
     default:
-      throw Error({"wrong type", where, "a number, a text, or true or false",
-                   kind_name(value.kind), ""});
+      throw Error(
+          {"wrong type", where, "a number, a text, or true or false", kind_name(value.kind), ""});
   }
   std::string rest;
   const std::optional<double> number = leading_number(value.text, rest);
@@ -112,12 +127,6 @@ SourceParameter make_parameter(const std::string& name, const std::string& text,
   value.kind = JsonValue::Kind::kString;
   value.text = text;
   return make_parameter(name, value, where);
-}
-
-std::string parameter_text(const SourceParameter& parameter) {
-  const Unit unit = parameter.unit.empty() ? Unit{} : parse_unit(parameter.unit);
-  if (unit.dimension == kDimensionless) return exact(parameter.number);
-  return exact(parameter.number) + " " + to_string(unit.dimension);
 }
 
 }  // namespace nepho

@@ -39,7 +39,7 @@ glm::dvec3 read_direction(const ObjectReader& in, std::string_view field) {
   if (!(length > 0) || !std::isfinite(length))
     throw Error({"not a direction", in.where(field), "a vector of some length", "", ""});
   // Written ones have length 1 already: dividing again would change their last bit.
-  return std::abs(length - 1) < 4e-16 ? v : v / length;
+  return std::abs(length - 1) < 1e-12 ? v : v / length;
 }
 
 Phase read_phase(const ObjectReader& in) {
@@ -92,8 +92,8 @@ CameraSpec read_camera(const ObjectReader& in, const Placement& frame) {
   camera.eye_m = read_spot(in, "look_from", frame);
   camera.target_m = read_spot(in, "look_at", frame);
   if (camera.eye_m && camera.target_m && *camera.eye_m == *camera.target_m)
-    throw Error({"camera looks nowhere", in.where(), "look_from apart from look_at",
-                 "the same point", ""});
+    throw Error(
+        {"camera looks nowhere", in.where(), "look_from apart from look_at", "the same point", ""});
   if (in.has("up_ecef")) camera.up = read_direction(in, "up_ecef");
   in.at_most_one({"fov_deg", "fov_rad"});
   camera.vertical_fov_rad = in.number("fov_rad");
@@ -182,6 +182,7 @@ Scene parse_scene(std::string_view text, const std::string& source_name,
   scene.exposure_ev = in.number("exposure_ev");
   if (const auto tone_map = in.text("tone_map"))
     scene.tone_map = *tone_map == "none" ? ToneMap::kNone : ToneMap::kAces;
+  if (const auto dither = in.text("dither")) scene.dither = *dither == "ordered";
   return scene;
 }
 
@@ -192,11 +193,14 @@ Scene read_scene_file(const std::filesystem::path& path) {
   if (failure || !in) {
     const bool folder = std::filesystem::is_directory(path);
     throw Error({folder ? "not a file" : "cannot read", path.string(), "a scene file",
-                 folder ? "a directory" : failure ? failure.message() : "no permission", ""});
+                 folder    ? "a directory"
+                 : failure ? failure.message()
+                           : "no permission",
+                 ""});
   }
   if (bytes > kLargestSceneFile)
-    throw Error({"not a scene", path.string(), "at most 16 MiB", std::to_string(bytes) + " bytes",
-                 ""});
+    throw Error(
+        {"not a scene", path.string(), "at most 16 MiB", std::to_string(bytes) + " bytes", ""});
   std::ostringstream text;
   text << in.rdbuf();
   return parse_scene(text.str(), path.string(), std::filesystem::absolute(path).parent_path());
@@ -226,8 +230,8 @@ glm::dvec3 to_local(const Placement& frame, const glm::dvec3& ecef_m) {
 }
 
 glm::dvec3 sun_direction(const Placement& frame, double azimuth_rad, double elevation_rad) {
-  return std::cos(elevation_rad) * (std::sin(azimuth_rad) * axis(frame, 0) +
-                                    std::cos(azimuth_rad) * axis(frame, 1)) +
+  return std::cos(elevation_rad) *
+             (std::sin(azimuth_rad) * axis(frame, 0) + std::cos(azimuth_rad) * axis(frame, 1)) +
          std::sin(elevation_rad) * axis(frame, 2);
 }
 

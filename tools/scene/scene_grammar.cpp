@@ -43,14 +43,10 @@ constexpr FieldGrammar kVolumeFields[] = {
 constexpr ObjectGrammar kVolume{"volume", kVolumeFields};
 
 constexpr FieldGrammar kCameraFields[] = {
-    {"look_from_m", kVector, -1e12, 1e12},
-    {"look_from", kObject, 0, 0, {}, &kPoint},
-    {"look_from_ecef_m", kVector, -1e12, 1e12},
-    {"look_at_m", kVector, -1e12, 1e12},
-    {"look_at", kObject, 0, 0, {}, &kPoint},
-    {"look_at_ecef_m", kVector, -1e12, 1e12},
-    {"up_ecef", kVector, -kHuge, kHuge},
-    {"fov_deg", kNumber, 1e-6, 170},
+    {"look_from_m", kVector, -1e12, 1e12},      {"look_from", kObject, 0, 0, {}, &kPoint},
+    {"look_from_ecef_m", kVector, -1e12, 1e12}, {"look_at_m", kVector, -1e12, 1e12},
+    {"look_at", kObject, 0, 0, {}, &kPoint},    {"look_at_ecef_m", kVector, -1e12, 1e12},
+    {"up_ecef", kVector, -kHuge, kHuge},        {"fov_deg", kNumber, 1e-6, 170},
     {"fov_rad", kNumber, 1e-8, 2.967},
 };
 constexpr ObjectGrammar kCamera{"camera", kCameraFields};
@@ -102,6 +98,7 @@ constexpr FieldGrammar kSceneFields[] = {
     {"render", kObject, 0, 0, {}, &kRender},
     {"exposure_ev", kNumber, -60, 60},
     {"tone_map", kChoice, 0, 0, "aces|none"},
+    {"dither", kChoice, 0, 0, "none|ordered"},
 };
 constexpr ObjectGrammar kScene{"scene", kSceneFields};
 

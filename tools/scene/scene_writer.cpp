@@ -1,6 +1,5 @@
 #include <nlohmann/json.hpp>
 
-#include "scene/parameter.h"
 #include "scene/scene_file.h"
 
 namespace nepho {
@@ -29,10 +28,9 @@ std::string write_file_name(const std::string& file, const std::filesystem::path
   return relative.empty() || ups > 2 ? absolute.string() : relative.string();
 }
 
+// A name that ends in its SI unit, and a number in it (parameter.h).
 Json write_parameter(const SourceParameter& parameter) {
   if (parameter.is_text) return parameter.text;
-  const std::string text = parameter_text(parameter);
-  if (text.find(' ') != std::string::npos) return text;
   return parameter.number;
 }
 
@@ -99,7 +97,9 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
   out["render"] = write_render(scene.render);
   if (scene.exposure_ev) out["exposure_ev"] = *scene.exposure_ev;
   out["tone_map"] = scene.tone_map == ToneMap::kNone ? "none" : "aces";
-  return out.dump(-1, ' ', true, Json::error_handler_t::replace);  // ASCII: PNG text chunks are Latin-1
+  if (scene.dither) out["dither"] = "ordered";
+  return out.dump(-1, ' ', true,
+                  Json::error_handler_t::replace);  // ASCII: PNG text chunks are Latin-1
 }
 
 }  // namespace nepho

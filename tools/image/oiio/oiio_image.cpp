@@ -34,8 +34,8 @@ int write(const char* path, const char* format, const PictureView* picture, char
     const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(format);
     if (!out) return fail(error, error_size, OIIO::geterror());
     const OIIO::ImageSpec spec = make_spec(*picture);
-    const bool good = out->open(path, spec) && out->write_image(spec.format, picture->pixels) &&
-                      out->close();
+    const bool good =
+        out->open(path, spec) && out->write_image(spec.format, picture->pixels) && out->close();
     return good ? 0 : fail(error, error_size, out->geterror());
   } catch (const std::exception& e) {
     return fail(error, error_size, e.what());

@@ -1,0 +1,2 @@
+# expect: layer 'render' must not use layer 'ingest': nepho_[a-z_]+ -> nepho_source_api
+target_link_libraries(nepho_tree PRIVATE $<$<CONFIG:RelWithDebInfo>:nepho_source_api>)

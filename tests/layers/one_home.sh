@@ -1,0 +1,27 @@
+#!/bin/sh
+# one_home.sh ROOT: each heavy package is looked for in one CMakeLists.txt, and its headers are
+# included in that folder only. A package without any home is a stale row, which fails as well.
+set -eu
+cd "$1"
+failed=0
+check() {  # check FOLDERS FIND_REGEX INCLUDE_REGEX, FOLDERS separated by |
+  homes=$(grep -rlE --include=CMakeLists.txt "$2" formats render ingest tools tests || true)
+  if [ -z "$homes" ]; then
+    echo "one_home: nobody looks for $2"
+    failed=1
+  fi
+  users=$(grep -rlE --include=*.h --include=*.cpp "#include [<\"]$3" formats render ingest tools tests || true)
+  for file in $homes $users; do
+    if ! echo "$file" | grep -qE "^($1)/"; then
+      echo "one_home: $file uses $2, which belongs into $1"
+      failed=1
+    fi
+  done
+  echo "one_home: $1: $(echo "$homes" | wc -w) find it, $(echo "$users" | wc -w) include it"
+}
+check 'ingest/sources/openvdb|tests/openvdb' 'find_package\(OpenVDB' 'openvdb/'
+check 'tools/image/oiio' 'find_package\(OpenImageIO' 'OpenImageIO/'
+check 'ingest/geo|tests' 'find_package\(GeographicLib' 'GeographicLib/'
+check 'tools' 'find_package\(CLI11' 'CLI/'
+check 'tools|tests' 'find_package\(nlohmann_json' 'nlohmann/'
+exit $failed

@@ -1,0 +1,160 @@
+#include "common/open_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/framing.h"
+#include "core/error.h"
+#include "scene/scene_file.h"
+
+namespace nepho {
+namespace {
+
+// A clear day at sea level, sun 40 degrees high: what is left of 1.6, 1.85, 2.0 W m-2 nm-1 at 650,
+// 550, 450 nm behind the air, and the blue that the air made of the rest. Rounded: a background to
+// look at, until the atmosphere is computed.
+constexpr glm::dvec3 kSunIrradiance_W_per_m2_nm{1.42, 1.50, 1.45};
+constexpr glm::dvec3 kZenith_W_per_m2_sr_nm{0.028, 0.058, 0.125};
+constexpr glm::dvec3 kHorizon_W_per_m2_sr_nm{0.125, 0.165, 0.215};
+constexpr glm::dvec3 kBelow_W_per_m2_sr_nm{0.050, 0.055, 0.060};
+
+std::string listed(const std::vector<double>& times_s) {
+  std::string text;
+  for (std::size_t i = 0; i < times_s.size() && i < 8; ++i)
+    text += (i ? ", " : "") + std::to_string(times_s[i]);
+  return text + (times_s.size() > 8 ? ", ... s" : " s");
+}
+
+// A planet's up is its own at each place; a box stands in the scene's frame.
+LocalAxes axes_at(const OpenedScene& opened, const Placement& frame, const glm::dvec3& ecef_m) {
+  const bool globe = std::any_of(opened.sources.begin(), opened.sources.end(), [](const auto& s) {
+    return s->info().chart->kind() == ChartKind::kShell;
+  });
+  LocalAxes axes{axis(frame, 0), axis(frame, 1), axis(frame, 2)};
+  if (!globe || opened.scene.place || glm::length(ecef_m) < 1e5) return axes;
+  axes.up = glm::normalize(ecef_m);
+  const glm::dvec3 pole{0, 0, 1};
+  const glm::dvec3 east = glm::cross(pole, axes.up);
+  axes.east = glm::length(east) > 1e-9 ? glm::normalize(east) : glm::dvec3(0, 1, 0);
+  axes.north = glm::cross(axes.up, axes.east);
+  return axes;
+}
+
+glm::dvec3 rough_middle(const std::vector<glm::dvec3>& points) {
+  glm::dvec3 sum(0.0);
+  for (const glm::dvec3& p : points) sum += p / double(points.size());
+  return sum;
+}
+
+Camera find_camera(const OpenedScene& opened, const Placement& frame) {
+  const CameraSpec& wish = opened.scene.camera;
+  std::vector<glm::dvec3> points;
+  if (!wish.eye_m || !wish.target_m)
+    for (std::size_t v = 0; v < opened.sources.size(); ++v) {
+      const auto more = occupied_points(*opened.sources[v], opened.request.volumes[v].time_s);
+      points.insert(points.end(), more.begin(), more.end());
+    }
+  if ((!wish.eye_m || !wish.target_m) && points.empty()) {
+    // An empty frame is legal data: it is drawn from where the whole box would be seen.
+    for (const auto& source : opened.sources)
+      for (int corner = 0; corner < 8; ++corner)
+        points.push_back(source->info().chart->ecef_m(
+            {0, glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2)}));
+  }
+  const glm::dvec3 about = wish.target_m ? *wish.target_m
+                           : wish.eye_m  ? *wish.eye_m
+                                         : rough_middle(points);
+  const RenderSettings& settings = opened.scene.render;
+  return frame_camera(points, axes_at(opened, frame, about), wish,
+                      double(settings.width) / settings.height);
+}
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+void find_light(OpenedScene& opened, const Placement& frame, const Camera& camera) {
+  Scene& scene = opened.scene;
+  const glm::dvec3 about = glm::length(camera.target_m) > 1e5 ? camera.target_m : camera.eye_m;
+  const LocalAxes axes = axes_at(opened, frame, about);
+  if (!scene.sun.to_sun) {
+    scene.sun.to_sun = sun_over_left_shoulder(camera, axes.up);
+    opened.assumptions.push_back("sun: 40 degrees high, behind the camera's left shoulder");
+  }
+  if (!scene.sun.irradiance_W_per_m2_nm)
+    scene.sun.irradiance_W_per_m2_nm = kSunIrradiance_W_per_m2_nm;
+  if (!scene.sky) {
+    scene.sky =
+        Sky{axes.up, kZenith_W_per_m2_sr_nm, kHorizon_W_per_m2_sr_nm, kBelow_W_per_m2_sr_nm};
+    opened.assumptions.push_back("sky: a clear day's gradient");
+  }
+}
+
+[[noreturn]] void rethrow_with_place(const Error& error, const VolumeSpec& volume) {
+  Error::Parts parts = error.parts();
+  std::string where = volume.where;
+  for (const SourceParameter& parameter : volume.parameters)
+    if (parts.where.find("'" + parameter.name + "'") != std::string::npos ||
+        parts.found.find("'" + parameter.name + "'") != std::string::npos)
+      where = parameter.where;
+  if (!where.empty()) parts.where = where + (parts.where.empty() ? "" : ": ") + parts.where;
+  throw Error(parts);
+}
+
+}  // namespace
+
+std::unique_ptr<BrickSource> open_volume(const SourceHost& host, const VolumeSpec& volume) {
+  try {
+    return host.open(volume);
+  } catch (const Error& error) {
+    rethrow_with_place(error, volume);
+  }
+}
+
+double time_of(const VolumeSpec& volume, const VolumeInfo& info) {
+  if (info.times_s.empty())
+    throw Error({"no time at all", "volume '" + info.name + "'", "", "", ""});
+  if (!volume.time_s) return info.times_s.front();
+  const auto found = std::find(info.times_s.begin(), info.times_s.end(), *volume.time_s);
+  if (found == info.times_s.end())
+    throw Error({"no such time", volume.where.empty() ? "volume '" + info.name + "'" : volume.where,
+                 "one of " + listed(info.times_s), std::to_string(*volume.time_s) + " s", ""});
+  return *found;
+}
+
+OpenedScene open_scene(const SourceHost& host, Scene scene) {
+  OpenedScene opened;
+  opened.scene = std::move(scene);
+  for (const VolumeSpec& volume : opened.scene.volumes) {
+    opened.sources.push_back(open_volume(host, volume));
+    const VolumeInfo& info = opened.sources.back()->info();
+    opened.request.volumes.push_back({opened.sources.back().get(), time_of(volume, info),
+                                      volume.phase.value_or(info.phase),
+                                      volume.co_albedo.value_or(info.co_albedo)});
+    for (const std::string& text : info.assumptions)
+      opened.assumptions.push_back(info.name + ": " + text);
+  }
+  const Placement frame = scene_frame(opened.scene);
+  const CameraSpec& wish = opened.scene.camera;
+  const bool framed = !wish.eye_m || !wish.target_m;
+  const Camera camera = find_camera(opened, frame);
+  if (framed) {
+    const glm::dvec3 eye = to_local(frame, camera.eye_m), target = to_local(frame, camera.target_m);
+    const auto point = [](const glm::dvec3& p) {
+      return number_text(p.x) + "," + number_text(p.y) + "," + number_text(p.z);
+    };
+    opened.assumptions.push_back("camera: frames the cloud, --look-from " + point(eye) +
+                                 " --look-at " + point(target));
+  }
+  find_light(opened, frame, camera);
+  opened.scene.camera = {camera.eye_m, camera.target_m, camera.up, camera.vertical_fov_rad};
+  opened.request.camera = camera;
+  opened.request.sun = {*opened.scene.sun.to_sun, *opened.scene.sun.irradiance_W_per_m2_nm};
+  opened.request.sky = *opened.scene.sky;
+  opened.request.settings = opened.scene.render;
+  return opened;
+}
+
+}  // namespace nepho

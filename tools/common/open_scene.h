@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/source_host.h"
+#include "renderer.h"
+#include "scene/scene.h"
+
+namespace nepho {
+
+// A scene with its sources open and nothing left to work out: where sources and renderer meet.
+struct OpenedScene {
+  Scene scene;  // camera, sun and sky are filled in: what a picture's metadata stores
+  std::vector<std::unique_ptr<BrickSource>> sources;
+  RenderRequest request;                 // points into `sources`
+  std::vector<std::string> assumptions;  // what was not in the data, one sentence each
+};
+
+std::unique_ptr<BrickSource> open_volume(const SourceHost& host, const VolumeSpec& volume);
+// The volume's time; throws Error that lists the times where it has no such one.
+double time_of(const VolumeSpec& volume, const VolumeInfo& info);
+// Throws Error: a source's own reasons (with the scene file's line), or nothing to look at.
+OpenedScene open_scene(const SourceHost& host, Scene scene);
+
+}  // namespace nepho
