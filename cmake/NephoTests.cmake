@@ -23,15 +23,26 @@ function(nepho_add_test_program name)
   nepho_layer(${name} tests)
 endfunction()
 
-# nepho_add_mutant(<name> OF <program> MUTANT <macro> FILTER <gtest filter> LABELS ... SOURCES ...
-# LIBS ...): the same tests compiled with a planted mistake; they must fail. Counted, and the number
-# is printed at configure time.
+# nepho_add_mutant(<name> [OF <program>] MUTANT <macro> FILTER <gtest filter> [REASON <regex>]
+# LABELS ... SOURCES ... LIBS ...): the same tests compiled with a planted mistake; they must fail.
+# Counted, and the number is printed at configure time.
+#   OF      program in which the same filter must pass, as control.<name>: built without the macro
+#   REASON  what the output must hold, so that a crash or a missing file does not count as a failure
 function(nepho_add_mutant name)
-  cmake_parse_arguments(A "" "MUTANT;FILTER" "LABELS;SOURCES;LIBS;DEFINES;ENV" ${ARGN})
+  cmake_parse_arguments(A "" "OF;MUTANT;FILTER;REASON" "LABELS;SOURCES;LIBS;DEFINES;ENV" ${ARGN})
   nepho_add_test_program(${name} SOURCES ${A_SOURCES} LIBS ${A_LIBS}
     DEFINES ${A_DEFINES} ${A_MUTANT})
   add_test(NAME mutant.${name} COMMAND ${name} --gtest_filter=${A_FILTER})
-  set_tests_properties(mutant.${name} PROPERTIES WILL_FAIL ON LABELS "${A_LABELS};mutant"
-    ENVIRONMENT "${A_ENV}")
+  set_tests_properties(mutant.${name} PROPERTIES LABELS "${A_LABELS};mutant" ENVIRONMENT "${A_ENV}")
+  if(A_REASON)
+    set_tests_properties(mutant.${name} PROPERTIES PASS_REGULAR_EXPRESSION "${A_REASON}")
+  else()
+    set_tests_properties(mutant.${name} PROPERTIES WILL_FAIL ON)
+  endif()
+  if(A_OF)
+    add_test(NAME control.${name} COMMAND ${A_OF} --gtest_filter=${A_FILTER})
+    set_tests_properties(control.${name} PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}"
+      FAIL_REGULAR_EXPRESSION "${A_REASON};Running 0 tests")
+  endif()
   set_property(GLOBAL APPEND PROPERTY NEPHO_MUTANTS ${name})
 endfunction()

@@ -60,7 +60,11 @@ class Chart {
 // Where a source is asked for a sample: the owner's position, whichever name the caller used.
 inline glm::dvec3 sample_ecef_m(const Chart& chart, const Lattice& lattice, int root, int level,
                                 Index3 global) {
+#ifdef NEPHO_MUTANT_SEAM
+  const Column owner = {root, global[0], global[1]};
+#else
   const Column owner = chart.names({root, global[0], global[1]}, lattice.cells(level)).owner();
+#endif
   return chart.ecef_m({owner.root, lattice.q(level, {owner.i, owner.j, global[2]})});
 }
 

@@ -43,9 +43,16 @@ ColumnStencil column_stencil(const Chart& chart, const Lattice& lattice, int coa
       for (int b = 0; b < y.size; ++b) {
         const Tap u = x.tap[std::size_t(a)], v = y.tap[std::size_t(b)];
         const Column fine = {name.root, u.index, v.index};
-        stencil.push_back({chart.names(fine, fine_cells).owner(),
-                           u.weight * v.weight * chart.hat_horizontal(fine, fine_cells)});
+#ifdef NEPHO_MUTANT_HATS_WITHOUT_VOLUME
+        const double area = 1;
+#else
+        const double area = chart.hat_horizontal(fine, fine_cells);
+#endif
+        stencil.push_back({chart.names(fine, fine_cells).owner(), u.weight * v.weight * area});
       }
+#ifdef NEPHO_MUTANT_HALF_THE_NAMES
+    break;
+#endif
   }
   return stencil;
 }

@@ -40,7 +40,11 @@ double weighted_mean(const ColumnStencil& columns, const LayerStencil& layers, F
       sum += column_weight * layer_weight * fine(column, k);
       total += column_weight * layer_weight;
     }
+#ifdef NEPHO_MUTANT_LEVEL_DRIFT
+  return 1.02 * (sum / total);
+#else
   return sum / total;
+#endif
 }
 
 // Same stencil, greatest value. Repeated from the finest level to a node's, it bounds the node's

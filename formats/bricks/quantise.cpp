@@ -40,6 +40,9 @@ Quantised quantise(std::span<const double> values, std::span<std::uint16_t> code
     q.offset = float_below(low);
     q.scale = float_above((high - double(q.offset)) / top_code);
   }
+#ifdef NEPHO_MUTANT_ZERO_IS_NOT_EXACT
+  q.offset += 0.25f * q.scale;  // within the error bound, but fog everywhere
+#endif
   for (std::size_t at = 0; at < values.size(); ++at) {
     const double steps = q.scale > 0 ? (values[at] - double(q.offset)) / double(q.scale) : 0;
     codes[at] = std::uint16_t(std::min(std::round(steps), double(top_code)));

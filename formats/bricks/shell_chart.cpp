@@ -61,6 +61,9 @@ HatLine hat_line(std::uint32_t index, std::uint32_t cells) {
 }  // namespace
 
 double equiangular(double s) {
+#ifdef NEPHO_MUTANT_SEAM
+  return std::tan(pi / 4 * s);
+#endif
   const double magnitude = std::abs(s);
   return std::copysign(magnitude == 1 ? 1.0 : std::tan(pi / 4 * magnitude), s);
 }

@@ -7,7 +7,9 @@ namespace nepho {
 
 struct Ellipsoid {
   double equatorial_m, polar_m;
-  static constexpr Ellipsoid wgs84() { return {constants::kWgs84Equatorial_m, constants::kWgs84Polar_m}; }
+  static constexpr Ellipsoid wgs84() {
+    return {constants::kWgs84Equatorial_m, constants::kWgs84Polar_m};
+  }
   static constexpr Ellipsoid sphere(double radius_m) { return {radius_m, radius_m}; }
 };
 

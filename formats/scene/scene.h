@@ -94,6 +94,7 @@ struct Scene {
   RenderSettings render;
   std::optional<double> exposure_ev;  // absent: from the picture
   ToneMap tone_map = ToneMap::kAces;
+  bool dither = false;  // ordered, in 8-bit pictures
 };
 
 }  // namespace nepho

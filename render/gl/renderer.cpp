@@ -10,6 +10,7 @@
 #include "gl/atlas.h"
 #include "gl/frame_data.h"
 #include "gl/object.h"
+#include "reference/probe.h"
 #include "tree/forest.h"
 
 extern const char* const nepho_shader_view;
@@ -239,6 +240,9 @@ RenderResult Renderer::run() {
   light();
   timed("view", [&] { view(); });
   timed("read back", [&] { read_back(); });
+  if (request_.settings.probe_pixels > 0)
+    timed("error probe",
+          [&] { result_.error = estimate_error(request_, forest_, result_.image); });
   report();
   return std::move(result_);
 }

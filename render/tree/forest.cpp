@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "tree/source_verbs.h"
 #include "tree/view_metric.h"
 
 namespace nepho {
@@ -19,19 +20,6 @@ namespace {
 // the number of threads.
 constexpr std::size_t kBatch = 256;
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
-
-void require(Status status, const BrickSource& source, const char* verb, NodeKey key) {
-  if (status == Status::kOk) return;
-  std::string text(512, '\0');
-  text.resize(std::min(source.last_error(text.data(), text.size()), text.size() - 1));
-  throw Error({.what = "a source failed to " + std::string(verb) + " a node: " + to_string(status),
-               .where = source.info().name + ", level " + std::to_string(key.level()) + ", root " +
-                        std::to_string(key.root()) + ", node " + std::to_string(key.i()) + " " +
-                        std::to_string(key.j()) + " " + std::to_string(key.k()),
-               .expected = "",
-               .found = text,
-               .hint = ""});
-}
 
 struct Counts {
   std::uint64_t nodes = 0, bricks = 0, lit = 0;
@@ -72,8 +60,7 @@ class Refiner {
   Refiner(std::span<const RenderVolume> volumes, const Refinement& refinement)
       : refinement_(refinement),
         metric_(refinement.camera, refinement.settings),
-        budget_bytes_(refinement.settings.budget_mib * kBytesPerMib),
-        counts_(volumes.size()) {
+        budget_bytes_(refinement.settings.budget_mib * kBytesPerMib) {
     for (const RenderVolume& volume : volumes)
       forest_.volumes.push_back(
           {.source = volume.source, .time_s = volume.time_s, .nodes = {}, .bricks = {}});
@@ -91,14 +78,8 @@ class Refiner {
 
  private:
   // All volumes share the renderer's textures, so the bill is made out once, for the sums.
-  std::uint64_t cost(const std::vector<Counts>& counts) const {
-    Counts sum;
-    for (const Counts& c : counts) {
-      sum.nodes += c.nodes;
-      sum.bricks += c.bricks;
-      sum.lit += c.lit;
-    }
-    return refinement_.cost.bytes(sum.nodes, sum.bricks, sum.lit);
+  std::uint64_t cost(const Counts& counts) const {
+    return refinement_.cost.bytes(counts.nodes, counts.bricks, counts.lit);
   }
 
   static void count(Counts& counts, NodeKind kind, int sign) {
@@ -110,7 +91,8 @@ class Refiner {
   NodeSummary summarise(std::uint32_t volume, NodeKey key) const {
     const VolumeTree& tree = forest_.volumes[volume];
     NodeSummary summary;
-    require(tree.source->summary(key, tree.time_s, summary), *tree.source, "summarise", key);
+    throw_on_failure(tree.source->summary(key, tree.time_s, summary), *tree.source, "summarise",
+                     key);
     return summary;
   }
 
@@ -119,7 +101,7 @@ class Refiner {
       const VolumeInfo& info = forest_.volumes[v].source->info();
       for (int root = 0; root < info.chart->roots(); ++root) {
         const NodeKey key(root, 0, 0, 0, 0);
-        append(v, key, summarise(v, key), counts_);
+        append(v, key, summarise(v, key));
       }
     }
     if (double(cost(counts_)) > budget_bytes_)
@@ -132,15 +114,14 @@ class Refiner {
   }
 
   // Adds a leaf to its tree, and to the queue where a split of it is worth something.
-  void append(std::uint32_t volume, NodeKey key, const NodeSummary& summary,
-              std::vector<Counts>& counts) {
+  void append(std::uint32_t volume, NodeKey key, const NodeSummary& summary) {
     VolumeTree& tree = forest_.volumes[volume];
     const TreeNode node = leaf_from(key, summary);
     const auto index = std::uint32_t(tree.nodes.size());
     tree.nodes.push_back(node);
     tree.finest_level_used = std::max(tree.finest_level_used, key.level());
-    ++counts[volume].nodes;
-    count(counts[volume], node.kind, +1);
+    ++counts_.nodes;
+    count(counts_, node.kind, +1);
 
     const VolumeInfo& info = tree.source->info();
     const bool nothing_below = summary.empty && summary.children == 0;
@@ -183,20 +164,19 @@ class Refiner {
     const Candidate first = *queue_.begin();
     const std::vector<NodeSummary>& summaries = children_of(first);
     const std::vector<NodeKey> keys = lattice(first.volume).children(first.key);
-    std::vector<Counts> after = counts_;
-    after[first.volume].nodes += keys.size();
-    count(after[first.volume], forest_.volumes[first.volume].nodes[first.node].kind, -1);
+    Counts after = counts_;
+    after.nodes += keys.size();
+    count(after, forest_.volumes[first.volume].nodes[first.node].kind, -1);
     for (std::size_t c = 0; c < keys.size(); ++c)
-      count(after[first.volume], leaf_from(keys[c], summaries[c]).kind, +1);
+      count(after, leaf_from(keys[c], summaries[c]).kind, +1);
     if (double(cost(after)) > budget_bytes_) return false;
 
     queue_.erase(queue_.begin());
     std::vector<TreeNode>& nodes = forest_.volumes[first.volume].nodes;
-    count(counts_[first.volume], nodes[first.node].kind, -1);
+    count(counts_, nodes[first.node].kind, -1);
     nodes[first.node].kind = NodeKind::kInner;
     nodes[first.node].first_child = std::uint32_t(nodes.size());
-    for (std::size_t c = 0; c < keys.size(); ++c)
-      append(first.volume, keys[c], summaries[c], counts_);
+    for (std::size_t c = 0; c < keys.size(); ++c) append(first.volume, keys[c], summaries[c]);
     summaries_.erase({first.volume, first.node});
     return true;
   }
@@ -217,13 +197,7 @@ class Refiner {
       tree.bricks.emplace_back().key = node.key;
     }
     tbb::parallel_for(std::size_t{0}, tree.bricks.size(), [&](std::size_t b) {
-      LeafBrick& brick = tree.bricks[b];
-      ChannelView view{.channel = Channel::kExtinction, .codes = brick.codes.data()};
-      require(tree.source->read(brick.key, tree.time_s, {&view, 1}), *tree.source, "read",
-              brick.key);
-      brick.scale = view.scale;
-      brick.offset = view.offset;
-      brick.max_abs_error = view.max_abs_error;
+      read_brick(*tree.source, tree.time_s, tree.bricks[b].key, tree.bricks[b]);
     });
   }
 
@@ -231,7 +205,7 @@ class Refiner {
   ViewMetric metric_;
   double budget_bytes_;
   Forest forest_;
-  std::vector<Counts> counts_;
+  Counts counts_;
   std::set<Candidate> queue_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<NodeSummary>> summaries_;
 };

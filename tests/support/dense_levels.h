@@ -94,10 +94,11 @@ Pyramid build_pyramid(const Chart& chart, const Lattice& lattice, Field&& field,
         known = brick[at];
       });
     });
-    for_each_sample(chart, coarse.cells(), [&](Column c, std::uint32_t k) {
-      pyramid.seams += coarse(c, k) != coarse(chart.names(c, coarse.cells()).owner(), k);
-    });
   }
+  for (const DenseLevel& level : pyramid.levels)
+    for_each_sample(chart, level.cells(), [&](Column c, std::uint32_t k) {
+      pyramid.seams += level(c, k) != level(chart.names(c, level.cells()).owner(), k);
+    });
   return pyramid;
 }
 

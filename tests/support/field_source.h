@@ -27,7 +27,10 @@ class FieldSource final : public BrickSource {
   }
 
   const VolumeInfo& info() const noexcept override { return info_; }
-  VolumeInfo& mutable_info() { return info_; }
+  // Before coding; `global` is an index on the key's level.
+  double sample(NodeKey key, const Index3& global) const {
+    return level(key)({key.root(), global[0], global[1]}, global[2]);
+  }
   Status summary(NodeKey key, double time_s, NodeSummary& summary) const noexcept override {
     if (const Status s = check_request(info_, key, time_s); s != Status::kOk) return s;
     summary = summaries_.at(key);

@@ -113,10 +113,12 @@ TEST(Forest, BudgetHoldsAndMoreOfItNeverCoarsens) {
   bool bound = false, free = false;
   for (double mib = 0.02; mib < 8; mib *= 1.3) {
     const Forest forest = build(refinement(mib));
-    std::uint64_t bytes = 0;
+    std::uint64_t nodes = 0, bricks = 0, lit = 0;
     for (std::size_t v = 0; v < 2; ++v) {
       const VolumeTree& tree = forest.volumes[v];
-      bytes += power_of_two_tiles(tree.nodes.size(), tree.bricks.size(), tree.lit_nodes);
+      nodes += tree.nodes.size();
+      bricks += tree.bricks.size();
+      lit += tree.lit_nodes;
       std::set<NodeKey> keys;
       for (const TreeNode& node : tree.nodes) keys.insert(node.key);
       EXPECT_TRUE(std::includes(keys.begin(), keys.end(), before[v].begin(), before[v].end()))
@@ -124,6 +126,7 @@ TEST(Forest, BudgetHoldsAndMoreOfItNeverCoarsens) {
       distinct += keys.size() > before[v].size();
       before[v] = std::move(keys);
     }
+    const std::uint64_t bytes = power_of_two_tiles(nodes, bricks, lit);
     EXPECT_EQ(bytes, forest.cost_bytes);
     EXPECT_LE(double(bytes), mib * 1024 * 1024);
     (forest.budget_bound ? bound : free) = true;

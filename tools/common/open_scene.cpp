@@ -61,8 +61,9 @@ Camera find_camera(const OpenedScene& opened, const Placement& frame) {
         points.push_back(source->info().chart->ecef_m(
             {0, glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2)}));
   }
-  const glm::dvec3 about = wish.target_m ? *wish.target_m : wish.eye_m ? *wish.eye_m
-                                                                       : rough_middle(points);
+  const glm::dvec3 about = wish.target_m ? *wish.target_m
+                           : wish.eye_m  ? *wish.eye_m
+                                         : rough_middle(points);
   const RenderSettings& settings = opened.scene.render;
   return frame_camera(points, axes_at(opened, frame, about), wish,
                       double(settings.width) / settings.height);
@@ -76,8 +77,7 @@ std::string number_text(double value) {
 
 void find_light(OpenedScene& opened, const Placement& frame, const Camera& camera) {
   Scene& scene = opened.scene;
-  const glm::dvec3 about =
-      glm::length(camera.target_m) > 1e5 ? camera.target_m : camera.eye_m;
+  const glm::dvec3 about = glm::length(camera.target_m) > 1e5 ? camera.target_m : camera.eye_m;
   const LocalAxes axes = axes_at(opened, frame, about);
   if (!scene.sun.to_sun) {
     scene.sun.to_sun = sun_over_left_shoulder(camera, axes.up);
@@ -86,8 +86,8 @@ void find_light(OpenedScene& opened, const Placement& frame, const Camera& camer
   if (!scene.sun.irradiance_W_per_m2_nm)
     scene.sun.irradiance_W_per_m2_nm = kSunIrradiance_W_per_m2_nm;
   if (!scene.sky) {
-    scene.sky = Sky{axes.up, kZenith_W_per_m2_sr_nm, kHorizon_W_per_m2_sr_nm,
-                    kBelow_W_per_m2_sr_nm};
+    scene.sky =
+        Sky{axes.up, kZenith_W_per_m2_sr_nm, kHorizon_W_per_m2_sr_nm, kBelow_W_per_m2_sr_nm};
     opened.assumptions.push_back("sky: a clear day's gradient");
   }
 }

@@ -86,8 +86,7 @@ void OutputFile::commit() {
   const int failure = errno;
   if (file >= 0) close(file);
   if (!flushed) refuse(target_, std::strerror(failure), "");
-  if (rename(temporary_.c_str(), target_.c_str()) != 0)
-    refuse(target_, std::strerror(errno), "");
+  if (rename(temporary_.c_str(), target_.c_str()) != 0) refuse(target_, std::strerror(errno), "");
   committed_ = true;
 }
 

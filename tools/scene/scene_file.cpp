@@ -182,6 +182,7 @@ Scene parse_scene(std::string_view text, const std::string& source_name,
   scene.exposure_ev = in.number("exposure_ev");
   if (const auto tone_map = in.text("tone_map"))
     scene.tone_map = *tone_map == "none" ? ToneMap::kNone : ToneMap::kAces;
+  if (const auto dither = in.text("dither")) scene.dither = *dither == "ordered";
   return scene;
 }
 

@@ -98,6 +98,7 @@ constexpr FieldGrammar kSceneFields[] = {
     {"render", kObject, 0, 0, {}, &kRender},
     {"exposure_ev", kNumber, -60, 60},
     {"tone_map", kChoice, 0, 0, "aces|none"},
+    {"dither", kChoice, 0, 0, "none|ordered"},
 };
 constexpr ObjectGrammar kScene{"scene", kSceneFields};
 

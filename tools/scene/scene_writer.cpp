@@ -97,6 +97,7 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
   out["render"] = write_render(scene.render);
   if (scene.exposure_ev) out["exposure_ev"] = *scene.exposure_ev;
   out["tone_map"] = scene.tone_map == ToneMap::kNone ? "none" : "aces";
+  if (scene.dither) out["dither"] = "ordered";
   return out.dump(-1, ' ', true,
                   Json::error_handler_t::replace);  // ASCII: PNG text chunks are Latin-1
 }

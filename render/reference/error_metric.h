@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+
+#include "renderer.h"
+
+namespace nepho {
+
+// The error of a picture (lattice.md 9), one function for whoever speaks of it: rms of the
+// difference in linear luminance over the pixels that show some volume, over those pixels' mean
+// luminance in the reference.
+inline constexpr double kShownOpticalDepth = 0.01;  // a pixel counts above it
+
+struct PixelPair {
+  double luminance, reference;
+};
+// Of pixels that count. Negative where there are none; infinite where the reference is black and
+// the picture is not.
+double relative_rms(std::span<const PixelPair> pixels);
+
+// Pixels count by the reference's optical depth. Throws std::invalid_argument where sizes differ.
+double picture_error(const HdrImage& picture, const HdrImage& reference);
+
+double pixel_luminance(const HdrImage& picture, std::size_t pixel);
+
+}  // namespace nepho

@@ -1,0 +1,131 @@
+#include "reference/walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "bricks/coarsen.h"
+#include "bricks/quantise.h"
+
+namespace nepho {
+namespace {
+
+constexpr std::size_t kMaxPieces = 50'000'000;
+
+std::int64_t floor_div(std::int64_t a, std::int64_t b) {
+  return a / b - (a % b < 0);
+}
+
+}  // namespace
+
+VolumeWalk::VolumeWalk(const LevelSet& levels, std::size_t volume, const Ray& ray, double t_max_m,
+                       bool whole_constants)
+    : levels_(levels),
+      volume_(volume),
+      ray_(chart_ray(levels.info(volume), ray)),
+      whole_constants_(whole_constants),
+      start_(ray_->start(t_max_m)),
+      root_(start_.root),
+      cell_(start_.cell),
+      done_(!(start_.end_m > start_.t_m)),
+      t1_m_(start_.t_m),
+      resume_m_(start_.t_m) {}
+
+bool VolumeWalk::in_leaf() const {
+  if (!found_ || leaf_root_ != root_) return false;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (cell_[a] < node_.low[a] || cell_[a] >= node_.high[a]) return false;
+  return true;
+}
+
+void VolumeWalk::find_leaf() {
+  const Lattice& lattice = levels_.info(volume_).lattice;
+  const Index3 inside = ray_->wrapped(cell_);
+  leaf_ = levels_.leaf(volume_, root_, inside);
+  leaf_root_ = root_;
+  found_ = true;
+  const Index3 &finest = lattice.cells(lattice.max_level()),
+               &own = lattice.cells(leaf_.key.level());
+  const Index3 at = leaf_.key.ijk();
+  for (std::size_t a = 0; a < 3; ++a) {
+    size_[a] = finest[a] / own[a];
+    node_.low[a] = cell_[a] - inside[a] + std::int64_t(at[a]) * kBrickCells * size_[a];
+    node_.high[a] = node_.low[a] + kBrickCells * size_[a];
+  }
+}
+
+void VolumeWalk::load_corners() {
+  Index3 s;
+  for (std::size_t a = 0; a < 3; ++a)
+    s[a] = std::uint32_t((block_.low[a] - node_.low[a]) / size_[a]);
+  const LeafBrick& brick = *leaf_.brick;
+  for (std::uint32_t c = 0; c < 8; ++c) {
+    const Index3 corner = {s[0] + (c & 1), s[1] + (c >> 1 & 1), s[2] + (c >> 2)};
+    const std::uint16_t code = brick.codes[brick_offset(corner[0], corner[1], corner[2])];
+    corners_[c] = double(decode(code, brick.scale, brick.offset));
+    // Zero decodes exactly; what coding did to it is nothing.
+    if (code != 0 || brick.offset != 0)
+      corners_[c] = std::max(
+          0.0, corners_[c] +
+                   levels_.noise_per_m(volume_, leaf_, Lattice::global_sample(leaf_.key, corner)));
+  }
+}
+
+bool VolumeWalk::next() {
+  if (done_) return false;
+  if (++pieces_ > kMaxPieces) throw std::logic_error("VolumeWalk: does not end");
+  t0_m_ = resume_m_;
+  if (!in_leaf()) find_leaf();
+  block_ = node_;
+  const bool cells =
+      leaf_.kind == NodeKind::kBrick || (leaf_.kind == NodeKind::kConstant && !whole_constants_);
+  if (cells)
+    for (std::size_t a = 0; a < 3; ++a) {
+      block_.low[a] += floor_div(cell_[a] - node_.low[a], size_[a]) * size_[a];
+      block_.high[a] = block_.low[a] + size_[a];
+    }
+  if (leaf_.kind == NodeKind::kBrick) load_corners();
+
+  const ChartRay::Exit exit = ray_->exit(root_, block_, t0_m_);
+  t1_m_ = std::min(exit.t_m, start_.end_m);
+  resume_m_ = t1_m_;
+  done_ = !(exit.t_m < start_.end_m);
+  if (done_) return true;
+  const glm::dvec3 at = ray_->cells_at(root_, exit.t_m);
+  for (int a = 0; a < 3; ++a) {
+    const auto i = std::size_t(a);
+    if (a == exit.axis)
+      cell_[i] = exit.side > 0 ? block_.high[i] : block_.low[i] - 1;
+    else
+      cell_[i] = std::int64_t(
+          std::clamp(std::floor(at[a]), double(block_.low[i]), double(block_.high[i] - 1)));
+  }
+  const Lattice& lattice = levels_.info(volume_).lattice;
+  const auto axis = std::size_t(exit.axis);
+  if (cell_[axis] < 0 || cell_[axis] >= lattice.cells(lattice.max_level())[axis])
+    done_ = !ray_->cross_end(exit, resume_m_, root_, cell_) || resume_m_ >= start_.end_m;
+  return true;
+}
+
+double VolumeWalk::extinction_per_m(double t_m) const {
+  if (leaf_.kind == NodeKind::kEmpty) return 0;
+  if (leaf_.kind == NodeKind::kConstant) return leaf_.constant_per_m;
+  const glm::dvec3 at = ray_->cells_at(leaf_root_, t_m);
+  glm::dvec3 f;
+  for (int a = 0; a < 3; ++a) {
+    const auto i = std::size_t(a);
+    f[a] = std::clamp((at[a] - double(block_.low[i])) / double(size_[i]), 0.0, 1.0);
+  }
+  const auto along_x = [&](std::size_t c) {
+    return corners_[c] + f.x * (corners_[c + 1] - corners_[c]);
+  };
+  const double near = along_x(0) + f.y * (along_x(2) - along_x(0));
+  const double far = along_x(4) + f.y * (along_x(6) - along_x(4));
+  return near + f.z * (far - near);
+}
+
+int VolumeWalk::sub_steps(double length_m) const {
+  return leaf_.kind == NodeKind::kBrick ? ray_->sub_steps(length_m, double(size_[2])) : 1;
+}
+
+}  // namespace nepho

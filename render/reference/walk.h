@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+
+#include "reference/chart_ray.h"
+#include "reference/level_set.h"
+
+namespace nepho {
+
+// One volume along one ray, piece by piece: a cell of a leaf, or the whole of an empty or constant
+// one. Inside a piece, extinction is smooth: in a box a cubic, exact by Simpson.
+class VolumeWalk {
+ public:
+  // `whole_constants`: a constant leaf is one piece, otherwise one per cell (for its source).
+  VolumeWalk(const LevelSet& levels, std::size_t volume, const Ray& ray, double t_max_m,
+             bool whole_constants);
+
+  // Moves to the next piece; false where the volume ends. Throws std::logic_error after more
+  // pieces than any lattice can have: a bug, never a picture that hangs.
+  bool next();
+
+  double t0_m() const { return t0_m_; }
+  double t1_m() const { return t1_m_; }
+  NodeKind kind() const { return leaf_.kind; }
+  double extinction_per_m(double t_m) const;  // t inside the piece
+  int sub_steps(double length_m) const;       // Simpson's, for such a length of it
+  std::size_t pieces() const { return pieces_; }
+  int root() const { return leaf_root_; }                  // of the piece
+  const ChartRay::Block& block() const { return block_; }  // its walls, in finest cells
+
+ private:
+  bool in_leaf() const;
+  void find_leaf();
+  void load_corners();
+
+  const LevelSet& levels_;
+  std::size_t volume_;
+  std::unique_ptr<ChartRay> ray_;
+  bool whole_constants_;
+  ChartRay::Start start_;
+  int root_ = 0;
+  ChartRay::Cell cell_{};  // finest cell that the next piece begins in
+  bool done_ = false, found_ = false;
+  LevelLeaf leaf_;
+  int leaf_root_ = 0;
+  ChartRay::Block node_{}, block_{};
+  ChartRay::Cell size_{};  // finest cells in one of the leaf's
+  std::array<double, 8> corners_{};
+  double t0_m_ = 0, t1_m_ = 0, resume_m_ = 0;
+  std::size_t pieces_ = 0;
+};
+
+}  // namespace nepho

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nepho {
+
+// What the command line says, still as the user wrote it: the commands check and convert.
+struct RenderOptions {
+  std::vector<std::string> inputs;  // a scene, a picture with a scene in it, or data files
+  std::string output;               // "": the input's name in this folder, .png (or .ppm)
+  std::optional<std::string> size, look_from, look_at, fov_deg, sun, up, metres_per_unit, grid;
+  std::optional<std::string> budget_mib, step_voxels, tolerance, fetch, light, seed, probe_pixels;
+  std::optional<std::string> frame, fps, density_scale, exposure_ev, tone_map, max_level;
+  bool explain = false, dither = false;
+};
+
+struct InfoOptions {
+  std::string input;
+  std::optional<std::string> grid, up, metres_per_unit, density_scale, frame;
+  bool json = false;
+};
+
+struct CompareOptions {
+  std::string a, b;
+};
+
+// Each throws Error for what a user can cause, and prints its result on standard output.
+void render_command(const RenderOptions& options);
+void info_command(const InfoOptions& options);
+void compare_command(const CompareOptions& options);
+
+}  // namespace nepho

@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/scene_input.h"
+#include "common/open_scene.h"
+#include "core/error.h"
+#include "scene/scene_file.h"
+
+namespace nepho {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json triple(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+std::string utc(std::int64_t origin_ns) {
+  const std::time_t seconds = std::time_t(origin_ns / 1'000'000'000);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[40];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+// Lengths of one finest cell's edges at the middle of the first root.
+glm::dvec3 finest_cell_m(const VolumeInfo& info) {
+  const Index3& cells = info.lattice.cells(info.lattice.max_level());
+  const glm::dvec3 middle = info.chart->ecef_m({0, glm::dvec3(0.5)});
+  glm::dvec3 lengths;
+  for (int a = 0; a < 3; ++a) {
+    glm::dvec3 q(0.5);
+    q[a] += 1.0 / cells[std::size_t(a)];
+    lengths[a] = glm::length(info.chart->ecef_m({0, q}) - middle);
+  }
+  return lengths;
+}
+
+std::string split_name(SplitMask mask) {
+  std::string name;
+  for (int a = 0; a < 3; ++a)
+    if (splits(mask, a)) name += "xyz"[a];
+  return name;
+}
+
+// The extremes over the whole volume: those of the roots.
+std::pair<float, float> extinction_range(const BrickSource& source, double time_s) {
+  float low = 0, high = 0;
+  for (int root = 0; root < source.info().chart->roots(); ++root) {
+    NodeSummary summary;
+    const Status status = source.summary({root, 0, 0u, 0u, 0u}, time_s, summary);
+    if (status != Status::kOk) {
+      char text[512] = "";
+      source.last_error(text, sizeof text);
+      throw Error({to_string(status), source.info().name, "", text, ""});
+    }
+    low = root ? std::min(low, summary.min_extinction_per_m) : summary.min_extinction_per_m;
+    high = std::max(high, summary.max_extinction_per_m);
+  }
+  return {low, high};
+}
+
+Json describe(const BrickSource& source, const VolumeSpec& volume) {
+  const VolumeInfo& info = source.info();
+  const Index3& cells = info.lattice.cells(info.lattice.max_level());
+  const auto [low, high] = extinction_range(source, time_of(volume, info));
+  Json out{{"name", info.name},
+           {"chart", info.chart->kind() == ChartKind::kBox ? "box" : "shell"},
+           {"roots", info.chart->roots()},
+           {"levels", info.lattice.max_level() + 1},
+           {"finest_cells", cells},
+           {"finest_cell_m", triple(finest_cell_m(info))},
+           {"samples", info.finest == SampleKind::kPoint ? "point" : "hat"},
+           {"bounds_q", {triple(info.bounds.low), triple(info.bounds.high)}},
+           {"extinction_per_m", {{"min", low}, {"max", high}}},
+           {"co_albedo", triple(info.co_albedo)},
+           {"time_origin", utc(info.time_origin_ns)},
+           {"times_s", info.times_s},
+           {"source_bytes", info.source_bytes},
+           {"files", volume.files},
+           {"assumptions", info.assumptions},
+           {"facts", info.facts}};
+  for (int level = 0; level < info.lattice.max_level(); ++level)
+    out["split_axes"].push_back(split_name(info.lattice.split_axes(level)));
+  for (const ChannelInfo& channel : info.channels)
+    out["channels"].push_back({{"name", channel.name},
+                               {"unit", channel.unit},
+                               {"code_bits", channel.code_bits},
+                               {"max_abs_error", channel.max_abs_error}});
+  const bool mie = info.phase.kind == PhaseKind::kMie;
+  out["phase"] = mie ? Json{{"kind", "mie"}, {"effective_radius_m", info.phase.effective_radius_m}}
+                     : Json{{"kind", "henyey_greenstein"}, {"asymmetry", info.phase.asymmetry}};
+  return out;
+}
+
+void print_list(const char* title, const Json& lines) {
+  for (const Json& line : lines) std::printf("  %s: %s\n", title, line.get<std::string>().c_str());
+}
+
+void print_volume(const Json& v) {
+  const auto cells = v["finest_cells"], size = v["finest_cell_m"];
+  std::printf("%s\n", v["name"].get<std::string>().c_str());
+  std::printf("  %s, %d root(s), %d levels, %u x %u x %u cells of %.6g x %.6g x %.6g m\n",
+              v["chart"].get<std::string>().c_str(), v["roots"].get<int>(), v["levels"].get<int>(),
+              cells[0].get<unsigned>(), cells[1].get<unsigned>(), cells[2].get<unsigned>(),
+              size[0].get<double>(), size[1].get<double>(), size[2].get<double>());
+  std::printf("  extinction %.6g to %.6g 1/m\n", v["extinction_per_m"]["min"].get<double>(),
+              v["extinction_per_m"]["max"].get<double>());
+  for (const Json& channel : v["channels"])
+    std::printf("  channel %s [%s], %d bit, error to %.3g\n",
+                channel["name"].get<std::string>().c_str(),
+                channel["unit"].get<std::string>().c_str(), channel["code_bits"].get<int>(),
+                channel["max_abs_error"].get<double>());
+  std::printf("  phase %s; samples: %s\n", v["phase"]["kind"].get<std::string>().c_str(),
+              v["samples"].get<std::string>().c_str());
+  std::printf("  %zu time(s), from %s; source holds %.2f MiB\n", v["times_s"].size(),
+              v["time_origin"].get<std::string>().c_str(),
+              v["source_bytes"].get<double>() / (1 << 20));
+  print_list("fact", v["facts"]);
+  print_list("assumed", v["assumptions"]);
+}
+
+Scene scene_of(const InfoOptions& options, const PictureFiles& pictures) {
+  const InputKind kind = input_kind(options.input);
+  if (kind == InputKind::kScene) return read_scene_file(options.input);
+  if (kind == InputKind::kPicture) return scene_in_picture(options.input, pictures);
+  Scene scene;
+  scene.volumes.push_back(data_volume(options.input));
+  set_parameter(scene, "grid", "--grid", options.grid);
+  set_parameter(scene, "up", "--up", options.up);
+  set_parameter(scene, "metres_per_unit", "--metres-per-unit", options.metres_per_unit);
+  set_parameter(scene, "density_scale", "--density-scale", options.density_scale);
+  set_parameter(scene, "frame", "--frame", options.frame);
+  return scene;
+}
+
+}  // namespace
+
+void info_command(const InfoOptions& options) {
+  const PictureFiles pictures(default_module_folders());
+  Json out;
+  if (is_picture_name(options.input)) {
+    input_kind(options.input);  // says so where there is no such file
+    for (const auto& [key, value] : pictures.read_metadata(options.input))
+      out["metadata"][key] = key == "nephoscope:scene" ? Json::parse(value) : Json(value);
+  } else {
+    const SourceHost host(default_module_folders());
+    const Scene scene = scene_of(options, pictures);
+    for (const VolumeSpec& volume : scene.volumes)
+      out["volumes"].push_back(describe(*open_volume(host, volume), volume));
+  }
+  if (options.json) {
+    std::printf("%s\n", out.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    return;
+  }
+  if (out.contains("volumes"))
+    for (const Json& volume : out["volumes"]) print_volume(volume);
+  if (out.contains("metadata"))
+    for (const auto& [key, value] : out["metadata"].items())
+      std::printf("%s: %s\n", key.c_str(),
+                  value.is_string() ? value.get<std::string>().c_str() : value.dump(2).c_str());
+}
+
+}  // namespace nepho

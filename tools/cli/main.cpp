@@ -1,0 +1,139 @@
+// nephoscope: the command line. Exit codes: 0 good; 1 bad data, bad values, or the machine; 2 an
+// unknown option, a missing argument, or options that exclude each other.
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <new>
+
+#include "cli/commands.h"
+#include "common/output_file.h"
+#include "core/error.h"
+#include "core/log.h"
+
+namespace nepho {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  nephoscope render smoke_0042.vdb -o smoke.png          camera, sun and exposure are worked out
+  nephoscope render plume.####.vdb --frame 12 -o p.exr   one frame of a sequence, linear light
+  nephoscope render scene.json --size 1920x1080 --sun 120,15 -o dusk.png
+  nephoscope render dusk.png -o again.png                the scene is in the picture: same bits
+  nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
+  nephoscope compare a.exr b.exr                         how far two pictures are apart)";
+
+void start_logging() {
+  auto logger = spdlog::stderr_logger_mt("nephoscope");
+  logger->set_pattern("%n: %l: %v");
+  spdlog::set_default_logger(logger);
+  set_log_sink(
+      [](void*, LogLevel level, const char* text) {
+        if (level == LogLevel::kDebug) spdlog::debug("{}", text);
+        if (level == LogLevel::kInfo) spdlog::info("{}", text);
+        if (level == LogLevel::kWarning) spdlog::warn("{}", text);
+      },
+      nullptr);
+}
+
+using Text = std::optional<std::string>;
+
+void add_data_options(CLI::App& command, Text& grid, Text& up, Text& metres_per_unit,
+                      Text& density_scale, Text& frame) {
+  command.add_option("--grid", grid, "name of the grid to draw (VDB)")->group("Data");
+  command.add_option("--up", up, "up axis of the file: y or z (VDB)")->group("Data");
+  command.add_option("--metres-per-unit", metres_per_unit, "size of one world unit of the file")
+      ->group("Data");
+  command.add_option("--density-scale", density_scale, "extinction (1/m) of density 1")
+      ->group("Data");
+  command.add_option("--frame", frame, "frame of a sequence name.####.vdb")->group("Data");
+}
+
+void add_camera_options(CLI::App& command, RenderOptions& o) {
+  const char* group = "Camera and light";
+  command.add_option("--look-from", o.look_from, "the eye: x,y,z in m, or geo:LAT,LON,HEIGHT")
+      ->group(group);
+  command.add_option("--look-at", o.look_at, "the target, in the same ways")->group(group);
+  command.add_option("--fov", o.fov_deg, "vertical field of view in degrees")->group(group);
+  command.add_option("--sun", o.sun, "AZIMUTH,ELEVATION in degrees")->group(group);
+  command.add_option("--exposure", o.exposure_ev, "in stops (EV); otherwise from the picture")
+      ->group(group);
+  command.add_option("--tone-map", o.tone_map, "aces or none")->group(group);
+  command.add_flag("--dither", o.dither, "ordered dither in 8-bit pictures")->group(group);
+}
+
+void add_quality_options(CLI::App& command, RenderOptions& o) {
+  const char* group = "Quality";
+  command.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (640x360)")->group(group);
+  command.add_option("--budget-mib", o.budget_mib, "memory on the GPU (256)")->group(group);
+  CLI::Option* step =
+      command.add_option("--step", o.step_voxels, "fixed step in voxels; 0 = exact per cell");
+  command.add_option("--tolerance", o.tolerance, "relative error that a step may make (0.01)")
+      ->excludes(step)
+      ->group(group);
+  step->group(group);
+  command.add_option("--fetch", o.fetch, "filter (the texture unit) or texels8 (exact)")
+      ->group(group);
+  command.add_option("--light", o.light, "octaves or single (scattering)")->group(group);
+  command.add_option("--max-level", o.max_level, "finest level of the tree to use")->group(group);
+  command.add_option("--seed", o.seed, "of what is drawn by chance: the probe's pixels")
+      ->group(group);
+  command.add_option("--probe-pixels", o.probe_pixels, "pixels that measure the error; 0 = none")
+      ->group(group);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Draws clouds as they are: any source, one contract, a stated error.", "nephoscope");
+  app.set_version_flag("--version", "nephoscope " NEPHO_VERSION);
+  app.require_subcommand(1);
+  app.footer(kExamples);
+
+  RenderOptions render;
+  CLI::App* draw = app.add_subcommand("render", "draw a scene, data files, or a picture again");
+  draw->add_option("INPUT", render.inputs, "SCENE.json, PICTURE, or data FILES")->required();
+  draw->add_option("-o,--output", render.output, "picture: .png .exr .hdr .pfm .ppm");
+  draw->add_flag("--explain", render.explain, "what was loaded, allocated, run, and left out");
+  add_quality_options(*draw, render);
+  add_camera_options(*draw, render);
+  add_data_options(*draw, render.grid, render.up, render.metres_per_unit, render.density_scale,
+                   render.frame);
+  draw->add_option("--fps", render.fps, "frames per second of a sequence (24)")->group("Data");
+  draw->footer(kExamples);
+  draw->callback([&] { render_command(render); });
+
+  InfoOptions info;
+  CLI::App* tell = app.add_subcommand("info", "what is in a file, a scene or a picture");
+  tell->add_option("FILE", info.input, "data, SCENE.json or PICTURE")->required();
+  tell->add_flag("--json", info.json, "for programs");
+  add_data_options(*tell, info.grid, info.up, info.metres_per_unit, info.density_scale, info.frame);
+  tell->callback([&] { info_command(info); });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    spdlog::error("{} (see nephoscope --help)", e.what());
+    return 2;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace nepho
+
+int main(int argc, char** argv) {
+  nepho::start_logging();
+  nepho::remove_output_on_signals();
+  try {
+    return nepho::run(argc, argv);
+  } catch (const nepho::Error& e) {
+    spdlog::error("{}", e.what());
+  } catch (const std::bad_alloc&) {
+    spdlog::error("out of memory");
+  } catch (const std::exception& e) {
+    spdlog::error("internal error: {}", e.what());
+  }
+  return 1;
+}

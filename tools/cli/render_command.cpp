@@ -1,0 +1,108 @@
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "cli/scene_input.h"
+#include "common/gl_context.h"
+#include "common/open_scene.h"
+#include "common/output_file.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "image/tone.h"
+#include "scene/scene_file.h"
+
+namespace nepho {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The first input's name, here: .png where this build writes it.
+fs::path output_of(const RenderOptions& options, const PictureFiles& pictures) {
+  if (!options.output.empty()) return options.output;
+  std::string stem = fs::path(options.inputs.front()).stem().string();
+  std::erase(stem, '#');
+  while (stem.ends_with('.')) stem.pop_back();
+  fs::path path = stem + ".png";
+  try {
+    pictures.check_format(path);
+  } catch (const Error&) {
+    path = stem + ".ppm";
+  }
+  std::error_code ignored;
+  for (const std::string& input : options.inputs)
+    if (fs::equivalent(path, input, ignored))
+      throw Error({"would replace its own input", path.string(), "another name with -o", "", ""});
+  return path;
+}
+
+// More than any of the formats needs.
+std::uintmax_t largest_size(const RenderSettings& settings, PictureFormat format) {
+  const auto pixels = std::uintmax_t(settings.width) * std::uintmax_t(settings.height);
+  return pixels * (format == PictureFormat::kExr ? 17 : is_linear(format) ? 13 : 4) + (64u << 10);
+}
+
+FloatImage linear_image(const HdrImage& picture) {
+  FloatImage out(picture.width, picture.height, 4);
+  for (std::size_t p = 0; p < out.count(); ++p) {
+    for (std::size_t c = 0; c < 3; ++c) out.values[4 * p + c] = picture.rgb[3 * p + c];
+    out.values[4 * p + 3] = picture.optical_depth[p];
+  }
+  return out;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
+  return text;
+}
+
+void print_result(const fs::path& output, const OpenedScene& opened, const std::string& error,
+                  bool exposure_found) {
+  const RenderSettings& settings = opened.scene.render;
+  const Usage usage = usage_now();
+  std::printf("%s: %dx%d, exposure %+.2f EV%s\n", output.c_str(), settings.width, settings.height,
+              *opened.scene.exposure_ev, exposure_found ? " (from the picture)" : "");
+  std::printf("%s\n", error.c_str());
+  for (const std::string& text : opened.assumptions) std::printf("assumed: %s\n", text.c_str());
+  std::printf("time: %.2f s CPU, %.2f s from launch to picture; peak memory %.0f MiB\n",
+              usage.cpu_s, usage.wall_s, usage.peak_mib);
+}
+
+}  // namespace
+
+void render_command(const RenderOptions& options) {
+  const PictureFiles pictures(default_module_folders());
+  const SourceHost host(default_module_folders());
+  const Scene scene = scene_from(options, pictures);
+  const fs::path output = output_of(options, pictures);
+  const PictureFormat format = picture_format(output);
+  pictures.check_format(output);
+  // Before any work: what cannot be written later is known now.
+  OutputFile file(output, largest_size(scene.render, format));
+  const auto context = make_egl_context();
+  OpenedScene opened = open_scene(host, scene);
+
+  const RenderResult result = render(opened.request);
+  const FloatImage linear = linear_image(result.image);
+  const bool find_exposure = !opened.scene.exposure_ev;
+  if (find_exposure) opened.scene.exposure_ev = exposure_from(linear, result.image.optical_depth);
+  const ByteImage shown = is_linear(format)
+                              ? ByteImage()
+                              : to_display(linear, *opened.scene.exposure_ev, opened.scene.tone_map,
+                                           opened.scene.dither);
+  const std::string error = error_line(result.error);
+  pictures.write(
+      file.temporary(), format, shown, linear,
+      {{"nephoscope:scene", write_scene(opened.scene, fs::absolute(output).parent_path())},
+       {"nephoscope:error", error},
+       {"nephoscope:assumptions", joined(opened.assumptions)},
+       {"nephoscope:version", NEPHO_VERSION}});
+  file.commit();
+  print_result(output, opened, error, find_exposure);
+  if (options.explain)
+    std::printf(
+        "%s",
+        explanation(opened, result, context->description(), PictureFiles::module_loaded()).c_str());
+}
+
+}  // namespace nepho

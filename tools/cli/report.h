@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "common/open_scene.h"
+#include "renderer.h"
+
+namespace nepho {
+
+// "error (estimated): integration 0.3 %, level of detail 1.2 %, quantisation 0.01 %, light model
+// 30 % (table, slabs)": what every render prints and stores.
+std::string error_line(const ErrorEstimate& error);
+
+// Process so far: CPU of all threads, time since its start, largest resident size.
+struct Usage {
+  double cpu_s = 0, wall_s = 0, peak_mib = 0;
+};
+Usage usage_now();
+
+// What --explain prints: modules, bricks, bytes, passes, switches, and what was left out.
+std::string explanation(const OpenedScene& opened, const RenderResult& result,
+                        const std::string& context, bool picture_module_used);
+
+}  // namespace nepho

@@ -1,0 +1,171 @@
+#include "cli/scene_input.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "cli/values.h"
+#include "core/error.h"
+#include "geo/place.h"
+#include "scene/parameter.h"
+#include "scene/scene_file.h"
+
+namespace nepho {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string ending_of(const fs::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+// "x,y,z" in the scene's local metres, or "geo:LAT,LON,HEIGHT".
+glm::dvec3 point_value(const std::string& option, const std::string& text, const Placement& frame) {
+  constexpr const char* shape = "x,y,z in metres, or geo:LAT,LON,HEIGHT";
+  const bool geodetic = text.starts_with("geo:");
+  const std::vector<double> v = list_value(option, geodetic ? text.substr(4) : text, 3, shape);
+  if (!geodetic) return to_ecef(frame, {v[0], v[1], v[2]});
+  const Placement place = placement_of({v[0], v[1], v[2], 0});
+  return {place.origin_ecef_m[0], place.origin_ecef_m[1], place.origin_ecef_m[2]};
+}
+
+void apply_camera(Scene& scene, const RenderOptions& o) {
+  const Placement frame = scene_frame(scene);
+  if (o.look_from || o.look_at) scene.camera.up.reset();  // worked out for another view
+  if (o.look_from) scene.camera.eye_m = point_value("--look-from", *o.look_from, frame);
+  if (o.look_at) scene.camera.target_m = point_value("--look-at", *o.look_at, frame);
+  if (o.fov_deg)
+    scene.camera.vertical_fov_rad =
+        glm::radians(number_value("--fov", *o.fov_deg, "camera", "fov_deg"));
+  if (scene.camera.eye_m && scene.camera.eye_m == scene.camera.target_m)
+    throw Error({"camera looks nowhere", "--look-from", "a point apart from --look-at", "", ""});
+}
+
+void apply_light(Scene& scene, const RenderOptions& o) {
+  if (o.sun) {
+    const std::vector<double> v = list_value("--sun", *o.sun, 2, "AZIMUTH,ELEVATION in degrees");
+    if (std::abs(v[0]) > 360 || std::abs(v[1]) > 90)
+      throw Error({"bad value", "--sun", "azimuth to 360 and elevation to 90 degrees",
+                   "'" + *o.sun + "'", ""});
+    scene.sun.to_sun = sun_direction(scene_frame(scene), glm::radians(v[0]), glm::radians(v[1]));
+  }
+  if (o.exposure_ev)
+    scene.exposure_ev = number_value("--exposure", *o.exposure_ev, "scene", "exposure_ev");
+  if (o.tone_map)
+    scene.tone_map = choice_value("--tone-map", *o.tone_map, "scene", "tone_map") == "none"
+                         ? ToneMap::kNone
+                         : ToneMap::kAces;
+  if (o.dither) scene.dither = true;
+}
+
+void apply_quality(Scene& scene, const RenderOptions& o) {
+  RenderSettings& settings = scene.render;
+  if (o.size) {
+    const glm::ivec2 size = size_value("--size", *o.size);
+    settings.width = size.x;
+    settings.height = size.y;
+  }
+  if (o.budget_mib)
+    settings.budget_mib = number_value("--budget-mib", *o.budget_mib, "render", "budget_mib");
+  if (o.step_voxels)
+    settings.step_voxels = number_value("--step", *o.step_voxels, "render", "step_voxels");
+  if (o.tolerance) {
+    settings.step_voxels.reset();
+    settings.tolerance = number_value("--tolerance", *o.tolerance, "render", "tolerance");
+  }
+  if (o.fetch)
+    settings.fetch = choice_value("--fetch", *o.fetch, "render", "fetch") == "filter"
+                         ? Fetch::kFilter
+                         : Fetch::kTexels8;
+  if (o.light)
+    settings.light = choice_value("--light", *o.light, "render", "light") == "single"
+                         ? Light::kSingle
+                         : Light::kOctaves;
+  if (o.max_level)
+    settings.max_level = integer_value("--max-level", *o.max_level, "render", "max_level");
+  if (o.seed) settings.seed = std::uint64_t(number_value("--seed", *o.seed, "render", "seed"));
+  if (o.probe_pixels)
+    settings.probe_pixels =
+        integer_value("--probe-pixels", *o.probe_pixels, "render", "probe_pixels");
+}
+
+}  // namespace
+
+InputKind input_kind(const std::string& input) {
+  if (input.find('#') == std::string::npos) {
+    std::error_code failure;
+    const fs::file_status status = fs::status(input, failure);
+    if (!fs::exists(status)) throw Error({"no such file", input, "", "", ""});
+    if (fs::is_directory(status)) throw Error({"cannot read", input, "a file", "a directory", ""});
+  }
+  if (ending_of(input) == ".json") return InputKind::kScene;
+  return is_picture_name(input) ? InputKind::kPicture : InputKind::kData;
+}
+
+Scene scene_in_picture(const fs::path& path, const PictureFiles& pictures) {
+  const Metadata metadata = pictures.read_metadata(path);
+  const auto found = metadata.find("nephoscope:scene");
+  if (found == metadata.end())
+    throw Error({"no scene in this picture", path.string(), "metadata nephoscope:scene", "none",
+                 "only pictures that nephoscope wrote can be drawn again"});
+  return parse_scene(found->second, path.string() + " (nephoscope:scene)",
+                     fs::absolute(path).parent_path());
+}
+
+VolumeSpec data_volume(const std::string& file) {
+  VolumeSpec volume;
+  volume.files = {fs::absolute(file).lexically_normal().string()};
+  volume.name = fs::path(file).stem().string();
+  const std::string ending = ending_of(file);
+  if (ending.empty())
+    throw Error({"unknown kind of file", file, "a name with an ending, such as .vdb", "none", ""});
+  volume.source = ending.substr(1);
+  return volume;
+}
+
+void set_parameter(Scene& scene, const char* parameter, const std::string& option,
+                   const std::optional<std::string>& value) {
+  if (!value) return;
+  const SourceParameter made = make_parameter(parameter, *value, option);
+  bool used = false;
+  for (VolumeSpec& volume : scene.volumes) {
+    if (volume.files.empty()) continue;
+    used = true;
+    auto& all = volume.parameters;
+    std::erase_if(all, [&](const SourceParameter& p) { return p.name == made.name; });
+    all.push_back(made);
+  }
+  if (!used) throw Error({"nothing to apply it to", option, "a volume with files", "none", ""});
+}
+
+Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
+  Scene scene;
+  std::vector<VolumeSpec> data;
+  bool scene_read = false;
+  for (const std::string& input : o.inputs) {
+    const InputKind kind = input_kind(input);
+    if (kind == InputKind::kData) {
+      data.push_back(data_volume(input));
+      continue;
+    }
+    if (scene_read) throw Error({"more than one scene", input, "one scene or picture", "", ""});
+    scene_read = true;
+    scene = kind == InputKind::kScene ? read_scene_file(input) : scene_in_picture(input, pictures);
+  }
+  scene.volumes.insert(scene.volumes.end(), data.begin(), data.end());
+  set_parameter(scene, "grid", "--grid", o.grid);
+  set_parameter(scene, "up", "--up", o.up);
+  set_parameter(scene, "metres_per_unit", "--metres-per-unit", o.metres_per_unit);
+  set_parameter(scene, "density_scale", "--density-scale", o.density_scale);
+  set_parameter(scene, "frame", "--frame", o.frame);
+  set_parameter(scene, "fps", "--fps", o.fps);
+  apply_quality(scene, o);
+  apply_camera(scene, o);
+  apply_light(scene, o);
+  return scene;
+}
+
+}  // namespace nepho

@@ -1,0 +1,105 @@
+#include "cli/values.h"
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "scene/scene_grammar.h"
+
+namespace nepho {
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& expected,
+                         const std::string& text) {
+  throw Error({"bad value", option, expected, "'" + text + "'", ""});
+}
+
+std::string shown(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+const FieldGrammar& grammar_of(std::string_view object, std::string_view field) {
+  const auto in = [&](const ObjectGrammar& grammar) -> const FieldGrammar* {
+    for (const FieldGrammar& known : grammar.fields)
+      if (known.name == field) return &known;
+    return nullptr;
+  };
+  const ObjectGrammar& scene = scene_grammar();
+  if (object == scene.name)
+    if (const FieldGrammar* found = in(scene)) return *found;
+  for (const FieldGrammar& part : scene.fields)
+    if (part.name == object && part.object)
+      if (const FieldGrammar* found = in(*part.object)) return *found;
+  throw std::logic_error("no field " + std::string(field));
+}
+
+}  // namespace
+
+double number_value(const std::string& option, const std::string& text) {
+  double value = 0;
+  const char* start = text.data() + (text.starts_with('+') ? 1 : 0);
+  const char* end = text.data() + text.size();
+  const auto [stop, failure] = std::from_chars(start, end, value);
+  if (failure != std::errc{} || stop != end || !std::isfinite(value))
+    refuse(option, "a number", text);
+  return value;
+}
+
+double number_value(const std::string& option, const std::string& text, const char* object,
+                    const char* field) {
+  const FieldGrammar& grammar = grammar_of(object, field);
+  const double value = number_value(option, text);
+  const bool whole = grammar.kind != FieldKind::kInteger || value == std::floor(value);
+  if (!whole || value < grammar.low || value > grammar.high)
+    refuse(option,
+           std::string(grammar.kind == FieldKind::kInteger ? "a whole number" : "a number") +
+               " from " + shown(grammar.low) + " to " + shown(grammar.high),
+           text);
+  return value;
+}
+
+int integer_value(const std::string& option, const std::string& text, const char* object,
+                  const char* field) {
+  return int(number_value(option, text, object, field));
+}
+
+std::string choice_value(const std::string& option, const std::string& text, const char* object,
+                         const char* field) {
+  std::string_view left = grammar_of(object, field).choices;
+  std::string listed;
+  while (!left.empty()) {
+    const std::size_t bar = left.find('|');
+    if (left.substr(0, bar) == text) return text;
+    listed += (listed.empty() ? "" : " or ") + std::string(left.substr(0, bar));
+    left.remove_prefix(bar == std::string_view::npos ? left.size() : bar + 1);
+  }
+  refuse(option, listed, text);
+}
+
+std::vector<double> list_value(const std::string& option, const std::string& text,
+                               std::size_t count, const char* shape) {
+  std::vector<double> values;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    try {
+      values.push_back(number_value(option, text.substr(at, comma - at)));
+    } catch (const Error&) {
+      refuse(option, shape, text);
+    }
+    at = comma + 1;
+  }
+  if (values.size() != count) refuse(option, shape, text);
+  return values;
+}
+
+glm::ivec2 size_value(const std::string& option, const std::string& text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos) refuse(option, "WIDTHxHEIGHT", text);
+  return {integer_value(option, text.substr(0, cross), "image", "width"),
+          integer_value(option, text.substr(cross + 1), "image", "height")};
+}
+
+}  // namespace nepho
