@@ -52,7 +52,6 @@ TEST(Identity, SeesWhatIsWrong) {
 }
 
 TEST(Identity, HoldsForPlacedVolumes) {
-  static const glm::dvec3 origin = {4.2e6, 6.1e5, 4.7e6};
   static const SourceHost host({NEPHO_TEST_MODULES});
   VolumeSpec volume;
   volume.name = "placed", volume.source = "openvdb", volume.files = {twin("sheared")};

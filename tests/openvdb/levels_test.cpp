@@ -94,7 +94,9 @@ TEST(Levels, SummariesBoundAllBelow) {
       const Brick brick = read(*source, key, 0);
       const auto [low, high] = std::ranges::minmax(brick.samples);
       EXPECT_EQ(s.empty, high == 0) << name << " level " << key.level();
-      if (s.constant) EXPECT_NEAR(high, low, 4e-7 * high);
+      if (s.constant) {
+        EXPECT_NEAR(high, low, 4e-7 * high);
+      }
       for (NodeKey at = key;; at = source->info().lattice.parent(at)) {
         const auto found = range.try_emplace(at, low, high).first;
         found->second = {std::min(found->second.first, low), std::max(found->second.second, high)};
@@ -107,7 +109,9 @@ TEST(Levels, SummariesBoundAllBelow) {
       EXPECT_LE(high, double(s.max_extinction_per_m)) << name << " level " << key.level();
       EXPECT_GE(low, double(s.min_extinction_per_m)) << name << " level " << key.level();
       if (high > 0) widest = std::max(widest, double(s.max_extinction_per_m) / high);
-      if (key.level() == finest) EXPECT_EQ(s.error_bound_per_m, 0);
+      if (key.level() == finest) {
+        EXPECT_EQ(s.error_bound_per_m, 0);
+      }
     }
     std::printf("measured: %-10s %zu nodes bounded, widest bound %.2f of the largest sample\n",
                 name, known.size(), widest);

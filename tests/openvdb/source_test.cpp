@@ -93,12 +93,24 @@ TEST(Axes, UpIsYUnlessBlenderOrTold) {
 TEST(Lattice, IsTheFilesOwn) {
   const auto source = open(twin("plain"), {number("metres_per_unit", 2), word("up", "z")});
   const VolumeInfo& info = source->info();
-  // voxels -8..32, -11..29, -13..27 at most: origins -16, -16, -16, and 33 + 16 cells need 64
-  EXPECT_EQ(info.lattice.cells(info.lattice.max_level())[0], 64u);
-  EXPECT_EQ(info.chart->ecef_m({0, glm::dvec3(0.0)}), glm::dvec3(-32.0));
-  EXPECT_EQ(info.chart->ecef_m({0, glm::dvec3(1.0)}), glm::dvec3(96.0));
-  EXPECT_GT(info.bounds.low.x, 0);
-  EXPECT_LT(info.bounds.high.x, 1);
+  // The grid's own lowest and highest voxels say where the lattice must lie.
+  std::array<int, 3> low{99, 99, 99}, high{-99, -99, -99};
+  for (const auto& block : samples::puff_grid().blocks)
+    for (int at = 0; at < 512; ++at) {
+      if (block.values[std::size_t(at)] == 0) continue;
+      const std::array<int, 3> v = {block.origin[0] + at % 8, block.origin[1] + at / 8 % 8,
+                                    block.origin[2] + at / 64};
+      for (std::size_t a = 0; a < 3; ++a)
+        low[a] = std::min(low[a], v[a]), high[a] = std::max(high[a], v[a]);
+    }
+  ASSERT_EQ(info.lattice.cells(info.lattice.max_level())[0], 64u);
+  for (int a = 0; a < 3; ++a) {
+    const double origin = 8 * std::floor((low[std::size_t(a)] - 1) / 8.0);
+    EXPECT_EQ(info.chart->ecef_m({0, glm::dvec3(0.0)})[a], 2 * origin);
+    EXPECT_EQ(info.chart->ecef_m({0, glm::dvec3(1.0)})[a], 2 * (origin + 64));
+    EXPECT_EQ(info.bounds.low[a], (low[std::size_t(a)] - 1 - origin) / 64);
+    EXPECT_EQ(info.bounds.high[a], (high[std::size_t(a)] + 1 - origin) / 64);
+  }
 }
 
 TEST(Facts, CountWhatWasCleaned) {

@@ -52,10 +52,10 @@ inline std::string twin(const std::string& name) {
 }
 
 inline SourceParameter number(const std::string& name, double value) {
-  return {name, "", value, "", false};
+  return {name, "", value, "", false, {}};
 }
 inline SourceParameter word(const std::string& name, const std::string& text) {
-  return {name, "", 0, text, true};
+  return {name, "", 0, text, true, {}};
 }
 
 inline std::unique_ptr<BrickSource> open(const std::string& file,
