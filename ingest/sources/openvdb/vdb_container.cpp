@@ -11,7 +11,7 @@ namespace nepho::vdb {
 namespace {
 
 constexpr std::int64_t kMagic = 0x56444220;
-constexpr std::uint32_t kOldestChecked = 218, kSelective = 220, kNodeMask = 222;
+constexpr std::uint32_t kOldest = 220, kNodeMask = 222, kNewest = 224;  // 1.0, 2.0, 10.0
 
 class Cursor {
  public:
@@ -86,7 +86,13 @@ void check_magic(const std::string& file, Cursor& in) {
         {"not a VDB file", file, "the magic number 20 42 44 56", "another kind of file", ""});
 }
 
-void check_grid(Cursor& in) {
+void skip_metadata(Cursor& in) {
+  const auto count = in.number<std::uint32_t>("metadata count");
+  for (std::uint32_t at = 0; at < count; ++at)
+    for (const char* what : {"metadata name", "metadata type", "metadata"}) in.skip_text(what);
+}
+
+void check_grid(Cursor& in, std::uint32_t version) {
   const std::string name = in.text("grid name");
   in.skip_text("grid type");
   in.skip_text("grid parent");
@@ -99,6 +105,10 @@ void check_grid(Cursor& in) {
   if (grid < in.position() || block < grid || end < block)
     in.refuse("ascending offsets of grid " + name,
               std::to_string(grid) + ", " + std::to_string(block) + ", " + std::to_string(end));
+  in.seek(grid);
+  if (version >= kNodeMask) in.skip(4, "compression flags");
+  skip_metadata(in);
+  in.skip_text("transform type");
   in.seek(end);
 }
 
@@ -109,18 +119,20 @@ void check_container(const std::string& file) {
   Cursor in(file, size);
   check_magic(file, in);
   const auto version = in.number<std::uint32_t>("file version");
-  if (version < kOldestChecked) return;
+  if (version < kOldest || version > kNewest)
+    throw Error({"unknown version of the VDB format", file,
+                 std::to_string(kOldest) + " to " + std::to_string(kNewest),
+                 std::to_string(version), "read and write it with a current OpenVDB"});
   in.skip(8, "library version");
-  const bool has_offsets = in.number<char>("offset flag") != 0;
-  if (version >= kSelective && version < kNodeMask) in.skip(1, "compression flag");
+  if (in.number<char>("offset flag") == 0)
+    throw Error({"the VDB file is a stream without grid offsets", file, "a file with offsets",
+                 "none", "write it with openvdb::io::File"});
+  if (version < kNodeMask) in.skip(1, "compression flag");
   in.skip(36, "identifier");
-  if (!has_offsets) return;
-  const auto metadata = in.number<std::uint32_t>("metadata count");
-  for (std::uint32_t at = 0; at < metadata; ++at)
-    for (const char* what : {"metadata name", "metadata type", "metadata"}) in.skip_text(what);
+  skip_metadata(in);
   const auto grids = in.number<std::int32_t>("grid count");
   if (grids < 0) in.refuse("a count of grids", std::to_string(grids));
-  for (std::int32_t at = 0; at < grids; ++at) check_grid(in);
+  for (std::int32_t at = 0; at < grids; ++at) check_grid(in, version);
 }
 
 }  // namespace nepho::vdb

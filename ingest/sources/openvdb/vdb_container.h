@@ -11,8 +11,10 @@ namespace nepho::vdb {
 //   metadata: count 4, each: name, type, value (length 4 + bytes)
 //   grids: count 4, each: name, type, parent (length 4 + bytes), grid, block, end (8 each)
 //
-// Throws Error: missing, a directory, empty, not a VDB, NanoVDB, truncated, offsets out of order.
-// Files older than version 218 and streams without offsets are checked for their magic alone.
+//     at grid: (from 222: compression 4) metadata as above | transform type (length 4 + bytes)
+//
+// Throws Error: missing, a directory, empty, not a VDB, NanoVDB, older than OpenVDB 1 or newer than
+// this library, a stream without offsets, truncated, offsets out of order.
 void check_container(const std::string& file);
 
 }  // namespace nepho::vdb

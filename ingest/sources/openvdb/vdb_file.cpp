@@ -1,12 +1,11 @@
 // Files of OpenVDB: which grid is meant, and reading it.
-#include <openvdb/io/File.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <new>
 
 #include "core/error.h"
+#include "vdb_archive.h"
 #include "vdb_container.h"
 #include "vdb_tree.h"
 
@@ -124,12 +123,13 @@ void read_transform(const std::string& file, const GridBase& grid, VdbHeader& he
     refuse("the grid's transform is singular", "axes that span no volume");
 }
 
-// OpenVDB prefers to copy a small file and map the copy: neither is wanted here.
-void open(openvdb::io::File& file, bool delay_values) {
-  static const bool initialized = [] { return openvdb::initialize(), true; }();
-  (void)initialized;
-  file.setCopyMaxBytes(0);
-  file.open(delay_values);
+// The first entry of this name.
+const VdbArchive::Entry& entry_of(const VdbArchive& archive, const std::string& name) {
+  const auto at = std::ranges::find(archive.entries(), name,
+                                    [](const auto& entry) { return entry.grid->getName(); });
+  if (at == archive.entries().end())
+    throw openvdb::LookupError("the file has no grid " + name + " any more");
+  return *at;
 }
 
 }  // namespace
@@ -149,11 +149,10 @@ void IndexBox::add(const IndexBox& other) {
 VdbHeader read_header(const std::string& file, const std::string& wanted) {
   check_container(file);
   return guarded(file, wanted, [&] {
-    openvdb::io::File in(file);
-    open(in, true);
+    VdbArchive archive(file);
     VdbHeader header;
-    const auto grids = in.readAllGridMetadata();
-    const std::vector<GridBase::ConstPtr> all(grids->begin(), grids->end());
+    std::vector<GridBase::ConstPtr> all;
+    for (const auto& entry : archive.entries()) all.push_back(entry.grid);
     if (all.empty()) return header;
     const GridBase::ConstPtr chosen = choose(file, wanted, all);
     header.has_grid = true;
@@ -164,9 +163,10 @@ VdbHeader read_header(const std::string& file, const std::string& wanted) {
     if (same > 1)
       header.remarks.push_back("The file has " + std::to_string(same) + " grids named " +
                                header.grid + "; the first is used.");
-    header.from_blender = names_blender(*chosen) || names_blender(*in.getMetadata());
+    header.from_blender = names_blender(*chosen) || names_blender(archive.metadata());
     read_transform(file, *chosen, header);
-    const openvdb::CoordBBox box = in.readGrid(header.grid)->evalActiveVoxelBoundingBox();
+    const openvdb::CoordBBox box =
+        archive.topology(entry_of(archive, header.grid))->evalActiveVoxelBoundingBox();
     if (!box.empty())
       for (int a = 0; a < 3; ++a) {
         header.active.low[std::size_t(a)] = box.min()[a];
@@ -179,9 +179,8 @@ VdbHeader read_header(const std::string& file, const std::string& wanted) {
 std::unique_ptr<VdbGrid> read_grid(const std::string& file, const std::string& grid) {
   check_container(file);
   return guarded(file, grid, [&] {
-    openvdb::io::File in(file);
-    open(in, false);
-    std::unique_ptr<VdbGrid> result = make_grid(in.readGrid(grid));
+    VdbArchive archive(file);
+    std::unique_ptr<VdbGrid> result = make_grid(archive.whole(entry_of(archive, grid)));
     if (!result)
       throw Error({"this grid is no density", where(file, grid),
                    "a float, half or double fog volume", "another type under the same name", ""});

@@ -71,8 +71,8 @@ struct VdbHeader {
   std::vector<std::string> remarks;
 };
 
-// `grid` empty: the rule of Options::grid. Neither reads voxel values where the file format allows
-// to skip them. Both throw Error, never an exception of OpenVDB.
+// `grid` empty: the rule of Options::grid. The header costs no voxel value. Both throw Error, never
+// an exception of OpenVDB.
 VdbHeader read_header(const std::string& file, const std::string& grid);
 std::unique_ptr<VdbGrid> read_grid(const std::string& file, const std::string& grid);
 

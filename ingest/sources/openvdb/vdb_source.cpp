@@ -186,6 +186,9 @@ void VdbSource::report(const LoadedFrame& frame) {
   const auto count = [&](std::uint64_t number, const char* what) {
     if (number > 0) info_.facts.push_back(std::to_string(number) + what + of + ".");
   };
+  if (tally.active > 0)
+    info_.facts.push_back("The tree takes " + std::to_string(frame.grid().bytes()) +
+                          " bytes, all that is held " + std::to_string(frame.bytes()) + of + ".");
   count(tally.non_finite, " active values are not finite and were set to 0");
   count(tally.negative, " active values are negative and were set to 0");
   count(tally.inactive_not_zero, " inactive values differ from 0 and count as 0");
