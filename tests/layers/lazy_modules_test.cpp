@@ -1,4 +1,5 @@
-// A scene loads what it needs and nothing else. Each TEST is a ctest entry, so a process of its own.
+// A scene loads what it needs and nothing else. Each TEST is a ctest entry, so a process of its
+// own.
 #include <gtest/gtest.h>
 
 #include <fstream>

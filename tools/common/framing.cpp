@@ -115,9 +115,11 @@ std::vector<glm::dvec3> occupied_points(const BrickSource& source, double time_s
     std::vector<NodeKey> finer;
     for (const NodeKey key : nodes) {
       const NodeSummary summary = summary_of(source, key, time_s);
-      if (summary.empty && summary.children == 0) continue;
-      const bool leaf = summary.children == 0 || key.level() == info.lattice.max_level();
-      if (enough || leaf) {
+      const bool finest = key.level() == info.lattice.max_level();
+      const bool uniform = summary.constant && summary.max_extinction_per_m > 0;
+      // A coarse brick may hold a neighbour's cloud on its face and nothing below.
+      if (finest ? summary.empty : summary.children == 0 && !uniform) continue;
+      if (enough || finest || uniform) {
         add_corners(info, key, points);
         continue;
       }
