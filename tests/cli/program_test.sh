@@ -45,7 +45,6 @@ render_repeats_from_its_metadata() {
     has info.txt '^nephoscope:error: error \(estimated\): integration'
     has info.txt '^nephoscope:version: [0-9]'
   done
-  cmp in/one.ppm other/two.ppm  # the file, not only its pixels
   # A changed option is another picture: the comparison above can fail.
   nephoscope render in/one.ppm --sun 200,40 -o three.ppm >/dev/null
   nephoscope compare in/one.ppm three.ppm >differ.txt && has differ.txt 'not the same pixels'
