@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/module_support.h"
+#include "bricks/coarsen.h"
 #include "pyramid/serve.h"
 #include "sources/analytic/options.h"
 
