@@ -15,7 +15,10 @@ struct MieRow {
   std::array<std::array<std::int32_t, kPhaseTexels>, 3> log_phase_1e4;
 };
 inline constexpr double kMieTableStep = 1e-4;
-inline constexpr std::array<double, 5> kMieRadii_m{5e-6, 8e-6, 10e-6, 14e-6, 20e-6};
+// Close enough for the asymmetry between two rows to be interpolated within 5e-4.
+inline constexpr std::array<double, 15> kMieRadii_m{4e-6,   4.5e-6,  5e-6,  5.7e-6,  6.5e-6,
+                                                    7.2e-6, 8e-6,    9e-6,  10e-6,   11.8e-6,
+                                                    14e-6,  16.7e-6, 20e-6, 24.5e-6, 30e-6};
 inline constexpr double kMieVariance = 0.1;
 inline constexpr int kMieIntegrationRadii = 8000;
 // Water at kWavelengths_m: Hale & Querry (1973).

@@ -32,7 +32,7 @@ RowBlend blend_rows(double radius_m) {
   constexpr double tolerance = 1e-9;  // of a radius that went through text
   if (!(radius_m >= kMieRadii_m.front() * (1 - tolerance) &&
         radius_m <= kMieRadii_m.back() * (1 + tolerance)))
-    throw Error({"effective radius outside the Mie table", "phase", "5 um .. 20 um",
+    throw Error({"effective radius outside the Mie table", "phase", "4 um .. 30 um",
                  with_unit(radius_m * 1e6, " um"), "use henyey_greenstein for other particles"});
   std::size_t above = 1;
   while (above + 1 < kRows.size() && kRows[above].effective_radius_m < radius_m) ++above;

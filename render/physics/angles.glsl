@@ -4,7 +4,7 @@
 const Number pi = Number(3.14159265358979323846);
 
 // |angle| <= pi. Doubled from angle / 2, so that 1 - cos keeps its digits too. s: relative error
-// 3e-7 up to pi / 2; beyond, s and c: 6e-7 absolute. (Double: 6e-8, the polynomial's own.)
+// 3e-7 up to pi / 2; beyond, s and c: 6e-7 absolute. (Double: 2e-7, the polynomial's own.)
 void sin_cos_small(Number angle, OUT(Number) s, OUT(Number) c) {
   Number x = Number(0.5) * angle;
   Number z = x * x;

@@ -34,14 +34,31 @@ InverseSolidAngle tested_hg(Number one_minus_cos, Number g) {
 }
 #endif
 
-#ifdef NEPHO_MUTANT_EARLY_NEAREST
-// The index below the camera and a fraction in [0, 1), as floats: the difference loses a near wall.
+#ifdef NEPHO_MUTANT_FLOAT_INDICES
+// Indices and altitudes as floats, then the difference: it loses a wall close by.
 Number tested_offset(int wall, int nearest, Number offset_cells, Number spacing) {
   return (Number(wall) - (Number(nearest) + offset_cells)) * spacing;
 }
+Length tested_drop(int wall, int nearest, Number offset_cells, Length spacing) {
+  return Number(wall) * spacing - (Number(nearest) + offset_cells) * spacing;
+}
 #else
+Length tested_drop(int wall, int nearest, Number offset_cells, Length spacing) {
+  return wall_height(wall, nearest, offset_cells, spacing);
+}
 Number tested_offset(int wall, int nearest, Number offset_cells, Number spacing) {
   return wall_offset(wall, nearest, offset_cells, spacing);
+}
+#endif
+
+#ifdef NEPHO_MUTANT_ROUNDED_COSINE
+Number tested_coordinate(Number one_minus_cos) {
+  Number mu = Number(1.0) - one_minus_cos;
+  return sqrt(arc_tangent(sqrt(max(Number(1.0) - mu * mu, Number(0.0))), mu) / pi);
+}
+#else
+Number tested_coordinate(Number one_minus_cos) {
+  return phase_table_coordinate(one_minus_cos);
 }
 #endif
 
@@ -109,7 +126,7 @@ void evaluate_geometry(int which, Number x0, Number x1, Number x2, Number x3, Nu
   if (which == 22) {
     Length first;
     Length second;
-    Length below = wall_height(wall, nearest, x1, x2 * metre);
+    Length below = tested_drop(wall, nearest, x1, x2 * metre);
     tested_spheres(x0 * metre, -below, x3, first, second);
     y0 = first / metre;
     y1 = second / metre;
@@ -142,7 +159,7 @@ void evaluate(int which, Number x0, Number x1, Number x2, Number x3, Number x4, 
   if (which == 4) y0 = tested_hg(x0, x1) / per_sr;
   if (which == 5) y0 = cornette_shanks_phase(x0, x1) / per_sr;
   if (which == 6) y0 = rayleigh_phase(x0) / per_sr;
-  if (which == 7) y0 = phase_table_coordinate(x0);
+  if (which == 7) y0 = tested_coordinate(x0);
   if (which == 8) {
     y0 = octave_scattering(wall);
     y1 = octave_transmittance(wall, x0);

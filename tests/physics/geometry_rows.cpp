@@ -95,13 +95,34 @@ bool sphere(Random& random, Row& row) {
   return row.scale[0] > 0 || row.scale[1] > 0;
 }
 
+// At the limb, with inputs of so few bits that b, c's factors and the truth are exact: what is left
+// is the difference b^2 - c, and hit or miss must be right however small it is.
+bool limb(Random& random, Row& row) {
+  const double r0 = 2048.0 * random.integer(2048, 4095);
+  const double steep = random.integer(1500, 4000) / 4096.0, b = r0 * steep;
+  const double above = std::nearbyint(r0 - std::sqrt(r0 * r0 - b * b)) + random.integer(-1, 1);
+  row.x = {r0, 0, 1, random.integer(0, 1) ? steep : -steep, 0, 0};
+  row.nearest = int(above);
+  const Real c = Real(above) * (2 * Real(r0) - above), discriminant = Real(b) * b - c;
+  if (discriminant < 0) {
+    row.truth = row.scale = {kNoHit, kNoHit, 0};
+    return true;
+  }
+  const Real root = sqrtl(discriminant), middle = -Real(r0) * row.x[3];
+  row.truth = {double(middle - root), double(middle + root), 0};
+  row.scale = {std::abs(row.truth[0]), std::abs(row.truth[1]), 0};
+  return true;
+}
+
 }  // namespace
 
 std::vector<Row> rows_of_angular_walls() {
   return random_rows(kWallRows, angular_wall);
 }
 std::vector<Row> rows_of_spheres() {
-  return random_rows(kWallRows, sphere);
+  std::vector<Row> rows = random_rows(kWallRows, sphere);
+  for (const Row& row : random_rows(kRows, limb)) rows.push_back(row);
+  return rows;
 }
 
 std::vector<Row> rows_of_offsets() {

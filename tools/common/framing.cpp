@@ -77,6 +77,27 @@ double distance_that_holds(std::span<const glm::dvec3> points, const glm::dvec3&
   return distance;
 }
 
+// The eye nearest to the points that sees them all in this direction. Each point keeps it behind
+// four planes, x - ex <= (z - ez) tan_x and so on, so that the largest sums decide. Relative to
+// `middle`, to keep the bits where the world's origin is far.
+glm::dvec3 nearest_eye(std::span<const glm::dvec3> points, const glm::dvec3& middle,
+                       const glm::dvec3& right, const glm::dvec3& upward, const glm::dvec3& forward,
+                       double tan_x, double tan_y) {
+  Extent x_plus, x_minus, y_plus, y_minus;
+  for (const glm::dvec3& p : points) {
+    const glm::dvec3 d = p - middle;
+    const double x = glm::dot(d, right), y = glm::dot(d, upward), z = glm::dot(d, forward);
+    x_plus.add(x - tan_x * z);
+    x_minus.add(-x - tan_x * z);
+    y_plus.add(y - tan_y * z);
+    y_minus.add(-y - tan_y * z);
+  }
+  const double ez = std::min(-(x_plus.high + x_minus.high) / (2 * tan_x),
+                             -(y_plus.high + y_minus.high) / (2 * tan_y));
+  return middle + 0.5 * (x_plus.high - x_minus.high) * right +
+         0.5 * (y_plus.high - y_minus.high) * upward + ez * forward;
+}
+
 glm::dvec3 not_parallel(const glm::dvec3& up, const glm::dvec3& otherwise,
                         const glm::dvec3& forward) {
   return glm::length(glm::cross(forward, up)) > 1e-6 ? up : otherwise;
@@ -94,9 +115,11 @@ std::vector<glm::dvec3> occupied_points(const BrickSource& source, double time_s
     std::vector<NodeKey> finer;
     for (const NodeKey key : nodes) {
       const NodeSummary summary = summary_of(source, key, time_s);
-      if (summary.empty && summary.children == 0) continue;
-      const bool leaf = summary.children == 0 || key.level() == info.lattice.max_level();
-      if (enough || leaf) {
+      const bool finest = key.level() == info.lattice.max_level();
+      const bool uniform = summary.constant && summary.max_extinction_per_m > 0;
+      // A coarse brick may hold a neighbour's cloud on its face and nothing below.
+      if (finest ? summary.empty : summary.children == 0 && !uniform) continue;
+      if (enough || finest || uniform) {
         add_corners(info, key, points);
         continue;
       }
@@ -132,22 +155,13 @@ Camera frame_camera(std::span<const glm::dvec3> points, const LocalAxes& axes,
   const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
   const glm::dvec3 upward = glm::cross(right, forward);
   const double tan_y = std::tan(camera.vertical_fov_rad / 2) / kMargin, tan_x = tan_y * aspect;
-  double distance = 0;
-  // Perspective moves the middle of the outline off the target: a few turns centre it.
-  for (int turn = 0; turn < 4; ++turn) {
-    distance = distance_that_holds(points, camera.target_m, right, upward, forward, tan_x, tan_y);
-    if (wish.target_m) break;
-    const glm::dvec3 eye = camera.target_m - distance * forward;
-    Extent across, along;
-    for (const glm::dvec3& p : points) {
-      const double ahead = std::max(glm::dot(p - eye, forward), 1e-9 * distance);
-      across.add(glm::dot(p - eye, right) / ahead);
-      along.add(glm::dot(p - eye, upward) / ahead);
-    }
-    camera.target_m += distance * (across.middle() * right + along.middle() * upward);
+  if (wish.target_m) {
+    camera.eye_m = camera.target_m - forward * distance_that_holds(points, camera.target_m, right,
+                                                                   upward, forward, tan_x, tan_y);
+    return camera;
   }
-  distance = distance_that_holds(points, camera.target_m, right, upward, forward, tan_x, tan_y);
-  camera.eye_m = camera.target_m - distance * forward;
+  camera.eye_m = nearest_eye(points, camera.target_m, right, upward, forward, tan_x, tan_y);
+  camera.target_m = camera.eye_m + forward * glm::dot(camera.target_m - camera.eye_m, forward);
   return camera;
 }
 

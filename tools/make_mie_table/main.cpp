@@ -1,5 +1,5 @@
-// make_mie_table OUT: writes render/optics/mie_table.inc (two CPU minutes). Run it again only when
-// the recipe in mie_table.h changes; a test recomputes one column.
+// make_mie_table OUT: writes render/optics/mie_table.inc (three CPU minutes). Run it again only
+// when the recipe in mie_table.h changes; a test recomputes one column.
 #include <array>
 #include <cstdio>
 #include <cstring>
