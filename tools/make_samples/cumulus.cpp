@@ -15,15 +15,16 @@ constexpr double kBox_m = 3200;
 constexpr double kBaseHeight_m = 160;  // of the condensation level over the lowest voxels
 constexpr double kMargin_m = 420;      // how far the skin's noise and the skirts reach
 
+// A main tower that leans, its shoulders, and low ones around; heads are wider than their necks.
 struct Turret {
-  double x, z, foot_radius, head_radius, height;
+  double x, z, neck_radius, head_radius, height;
 };
-// A main tower, its shoulders, and low ones around.
 constexpr Turret kTurrets[] = {
-    {-60, -40, 620, 400, 1560},  {330, 180, 520, 330, 1180},  {-480, 200, 470, 300, 950},
-    {120, -470, 460, 290, 1020}, {-350, -420, 420, 250, 700}, {640, -240, 380, 230, 620},
-    {-820, -80, 330, 190, 430},  {620, 560, 340, 200, 480},   {-200, 640, 400, 240, 720},
-    {930, 160, 230, 140, 280},
+    {-190, -60, 330, 440, 1640}, {330, 60, 330, 400, 1230},   {-610, 240, 300, 330, 880},
+    {60, -520, 300, 330, 960},   {-560, -430, 290, 280, 620}, {760, -200, 290, 300, 700},
+    {-980, -60, 240, 230, 430},  {660, 480, 300, 280, 560},   {-130, 640, 320, 330, 780},
+    {1090, 190, 200, 190, 310},  {390, -820, 230, 220, 380},  {-430, 850, 220, 210, 350},
+    {40, 120, 460, 300, 560},    {-380, -40, 420, 260, 480},  {420, -150, 400, 260, 460},
 };
 
 double smooth_min(double a, double b, double blend) {
@@ -38,13 +39,12 @@ Cumulus::Cumulus(const CumulusShape& shape) : shape_(shape), top_m_(0) {
   Dice dice(shape.seed);
   for (const Turret& turret : kTurrets) {
     // A stack of bubbles, wide at the foot, leaning a little.
-    const double lean_x = dice(-0.16, 0.16), lean_z = dice(-0.16, 0.16);
+    const double lean_x = dice(-0.12, 0.30), lean_z = dice(-0.2, 0.2);
     const int storeys = 3 + int(turret.height / 330);
     for (int storey = 0; storey < storeys; ++storey) {
       const double t = double(storey) / (storeys - 1);
-      const double radius = turret.foot_radius +
-                            (turret.head_radius - turret.foot_radius) * std::sqrt(t) +
-                            dice(-25, 25);
+      const double radius =
+          turret.neck_radius + (turret.head_radius - turret.neck_radius) * t + dice(-30, 30);
       const double y = 30 + t * (turret.height - turret.head_radius);
       const glm::dvec3 centre = {turret.x + lean_x * y + dice(-50, 50), y,
                                  turret.z + lean_z * y + dice(-50, 50)};

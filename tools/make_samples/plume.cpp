@@ -11,13 +11,8 @@
 namespace nepho::samples {
 namespace {
 
-template <class Visit>
-void for_each_cell(const CellField& like, Visit&& visit) {
-  tbb::parallel_for(0, like.nz(), [&](int k) {
-    for (int j = 0; j < like.ny(); ++j)
-      for (int i = 0; i < like.nx(); ++i) visit(i, j, k);
-  });
-}
+constexpr int kRowsAhead = 14;  // of the smoke's top
+constexpr float kTraceSmoke = 1e-3f;
 
 glm::vec3 cell(int i, int j, int k) {
   return {float(i), float(j), float(k)};
@@ -51,6 +46,7 @@ float CellField::lookup(glm::vec3 p, float* low, float* high) const {
 
 Plume::Plume(const PlumeSettings& s)
     : s_(s),
+      rows_(std::min(s.ny, 12 + kRowsAhead)),
       u_(s.nx + 1, s.ny, s.nz),
       v_(s.nx, s.ny + 1, s.nz),
       w_(s.nx, s.ny, s.nz + 1),
@@ -63,21 +59,33 @@ glm::vec3 Plume::velocity(glm::vec3 p) const {
           w_.sample({p.x, p.y, p.z + 0.5f})};
 }
 
-// Midpoint rule, one step back (+1) or ahead (-1) in time.
-glm::vec3 Plume::departure(glm::vec3 p, float direction) const {
-  const glm::vec3 middle = p - 0.5f * direction * velocity(p);
-  return p - direction * velocity(middle);
+glm::vec3 Plume::centre_velocity(int i, int j, int k) const {
+  return 0.5f * glm::vec3(u_.at(i, j, k) + u_.at(i + 1, j, k), v_.at(i, j, k) + v_.at(i, j + 1, k),
+                          w_.at(i, j, k) + w_.at(i, j, k + 1));
+}
+
+// To where the air of a cell was a step ago (direction -1) or will be (+1): midpoint rule.
+glm::vec3 Plume::displacement(int i, int j, int k, float direction) const {
+  return direction * velocity(cell(i, j, k) + 0.5f * direction * centre_velocity(i, j, k));
+}
+
+template <class Visit>
+void Plume::for_each_cell(Visit&& visit) const {
+  tbb::parallel_for(0, s_.nz, [&](int k) {
+    for (int j = 0; j < rows_; ++j)
+      for (int i = 0; i < s_.nx; ++i) visit(i, j, k);
+  });
 }
 
 // A fire of flickering patches on the floor.
 void Plume::emit() {
-  const glm::dvec3 middle = {0.5 * (s_.nx - 1), 6, 0.5 * (s_.nz - 1)};
+  const glm::dvec3 middle = {0.5 * (s_.nx - 1), 0, 0.5 * (s_.nz - 1)};
   const double time = 0.045 * steps_, radius = double(s_.source_radius);
-  for_each_cell(smoke_, [&](int i, int j, int k) {
+  for_each_cell([&](int i, int j, int k) {
     const glm::dvec3 d = glm::dvec3(i, j, k) - middle;
-    if (std::abs(d.y) > 4 || glm::length(d) > 1.5 * radius) return;
+    if (j > 3 || glm::length(d) > 1.8 * radius) return;
     const glm::dvec3 at = {d.x / 6, d.z / 6, time};
-    const double ragged = radius * (1 + 0.4 * gradient_noise(at, s_.seed));
+    const double ragged = radius * (1 + 0.6 * gradient_noise(at, s_.seed));
     const double amount = smooth_step(ragged + 1, ragged - 2, std::sqrt(d.x * d.x + d.z * d.z));
     if (amount <= 0) return;
     const double fire = amount * (0.75 + 0.5 * gradient_noise(1.7 * at, s_.seed + 1));
@@ -91,10 +99,9 @@ void Plume::emit() {
 }
 
 void Plume::push() {
-  for_each_cell(v_, [&](int i, int j, int k) {
+  for_each_cell([&](int i, int j, int k) {
     if (j == 0) return;
-    const float above = j < s_.ny ? heat_.at(i, j, k) : 0;
-    v_.at(i, j, k) += s_.buoyancy * 0.5f * (heat_.at(i, j - 1, k) + above);
+    v_.at(i, j, k) += s_.buoyancy * 0.5f * (heat_.at(i, j - 1, k) + heat_.at(i, j, k));
   });
 }
 
@@ -106,25 +113,20 @@ void Plume::confine() {
                                  CellField(nx, ny, nz)};
   CellField strength(nx, ny, nz);
   const auto inside = [&](int i, int j, int k) {
-    return i > 0 && j > 0 && k > 0 && i < nx - 1 && j < ny - 1 && k < nz - 1;
+    return i > 0 && j > 0 && k > 0 && i < nx - 1 && j < rows_ - 1 && k < nz - 1;
   };
-  const auto centre = [&](int i, int j, int k) {
-    return 0.5f * glm::vec3(u_.at(i, j, k) + u_.at(i + 1, j, k),
-                            v_.at(i, j, k) + v_.at(i, j + 1, k),
-                            w_.at(i, j, k) + w_.at(i, j, k + 1));
-  };
-  for_each_cell(strength, [&](int i, int j, int k) {
+  for_each_cell([&](int i, int j, int k) {
     if (!inside(i, j, k)) return;
-    const glm::vec3 dx = 0.5f * (centre(i + 1, j, k) - centre(i - 1, j, k));
-    const glm::vec3 dy = 0.5f * (centre(i, j + 1, k) - centre(i, j - 1, k));
-    const glm::vec3 dz = 0.5f * (centre(i, j, k + 1) - centre(i, j, k - 1));
+    const glm::vec3 dx = 0.5f * (centre_velocity(i + 1, j, k) - centre_velocity(i - 1, j, k));
+    const glm::vec3 dy = 0.5f * (centre_velocity(i, j + 1, k) - centre_velocity(i, j - 1, k));
+    const glm::vec3 dz = 0.5f * (centre_velocity(i, j, k + 1) - centre_velocity(i, j, k - 1));
     const glm::vec3 curl = {dy.z - dz.y, dz.x - dx.z, dx.y - dy.x};
     for (int a = 0; a < 3; ++a) omega[std::size_t(a)].at(i, j, k) = curl[a];
     strength.at(i, j, k) = glm::length(curl);
   });
   std::array<CellField, 3> force = {CellField(nx, ny, nz), CellField(nx, ny, nz),
                                     CellField(nx, ny, nz)};
-  for_each_cell(strength, [&](int i, int j, int k) {
+  for_each_cell([&](int i, int j, int k) {
     if (!inside(i, j, k)) return;
     const glm::vec3 slope = {strength.at(i + 1, j, k) - strength.at(i - 1, j, k),
                              strength.at(i, j + 1, k) - strength.at(i, j - 1, k),
@@ -137,7 +139,7 @@ void Plume::confine() {
     const glm::vec3 f = eps * glm::cross(slope / steep, curl);
     for (int a = 0; a < 3; ++a) force[std::size_t(a)].at(i, j, k) = f[a];
   });
-  for_each_cell(strength, [&](int i, int j, int k) {
+  for_each_cell([&](int i, int j, int k) {
     if (!inside(i, j, k)) return;
     u_.at(i, j, k) += 0.5f * (force[0].at(i, j, k) + force[0].at(i - 1, j, k));
     v_.at(i, j, k) += 0.5f * (force[1].at(i, j, k) + force[1].at(i, j - 1, k));
@@ -168,11 +170,11 @@ void Plume::project() {
     for (int i = 0; i < nx; ++i) v_.at(i, 0, k) = 0;
 
   CellField source(nx, ny, nz);
-  for_each_cell(source, [&](int i, int j, int k) { source.at(i, j, k) = divergence(i, j, k); });
+  for_each_cell([&](int i, int j, int k) { source.at(i, j, k) = divergence(i, j, k); });
   constexpr float kOverRelaxation = 1.82f;
   for (int sweep = 0; sweep < 2 * s_.pressure_sweeps; ++sweep)
     tbb::parallel_for(0, nz, [&](int k) {
-      for (int j = 0; j < ny; ++j)
+      for (int j = 0; j < rows_; ++j)
         for (int i = (sweep + j + k) & 1; i < nx; i += 2) {
           // a solid neighbour takes no part; the open top has pressure 0 and counts
           float sum = 0, count = 1;
@@ -181,52 +183,65 @@ void Plume::project() {
           if (k > 0) sum += pressure_.at(i, j, k - 1), ++count;
           if (k < nz - 1) sum += pressure_.at(i, j, k + 1), ++count;
           if (j > 0) sum += pressure_.at(i, j - 1, k), ++count;
-          if (j < ny - 1) sum += pressure_.at(i, j + 1, k);
+          if (j < rows_ - 1) sum += pressure_.at(i, j + 1, k);
           float& p = pressure_.at(i, j, k);
           p += kOverRelaxation * ((sum - source.at(i, j, k)) / count - p);
         }
     });
-  for_each_cell(source, [&](int i, int j, int k) {
+  for_each_cell([&](int i, int j, int k) {
     const float p = pressure_.at(i, j, k);
     if (i > 0) u_.at(i, j, k) -= p - pressure_.at(i - 1, j, k);
     if (j > 0) v_.at(i, j, k) -= p - pressure_.at(i, j - 1, k);
     if (k > 0) w_.at(i, j, k) -= p - pressure_.at(i, j, k - 1);
-    if (j == ny - 1) v_.at(i, ny, k) += p;
+    if (j == rows_ - 1) v_.at(i, rows_, k) += p;
   });
 }
 
-void Plume::advect_velocity() {
+// Air carries its own velocity (semi-Lagrangian: a face is displaced as the two cells beside it),
+// and smoke and heat (MacCormack: there and back again, half of what that lost is put back, within
+// the range of the values that it came from).
+void Plume::advect() {
+  const CellField smoke = smoke_, heat = heat_;
+  CellField smoke_there = smoke_, heat_there = heat_;
+  std::array<CellField, 3> back{smoke_, smoke_, smoke_};
+  for_each_cell([&](int i, int j, int k) {
+    const glm::vec3 d = displacement(i, j, k, -1), from = cell(i, j, k) + d;
+    for (int a = 0; a < 3; ++a) back[std::size_t(a)].at(i, j, k) = d[a];
+    smoke_there.at(i, j, k) = smoke.sample(from);
+    heat_there.at(i, j, k) = heat.sample(from);
+  });
+  const auto departure = [&](int i, int j, int k) {
+    return cell(i, j, k) + glm::vec3(back[0].at(i, j, k), back[1].at(i, j, k), back[2].at(i, j, k));
+  };
   CellField u = u_, v = v_, w = w_;
-  for_each_cell(u, [&](int i, int j, int k) {
-    const glm::vec3 from = departure(cell(i, j, k) - glm::vec3(0.5f, 0, 0), 1);
-    u.at(i, j, k) = u_.sample({from.x + 0.5f, from.y, from.z});
-  });
-  for_each_cell(v, [&](int i, int j, int k) {
-    const glm::vec3 from = departure(cell(i, j, k) - glm::vec3(0, 0.5f, 0), 1);
-    v.at(i, j, k) = v_.sample({from.x, from.y + 0.5f, from.z});
-  });
-  for_each_cell(w, [&](int i, int j, int k) {
-    const glm::vec3 from = departure(cell(i, j, k) - glm::vec3(0, 0, 0.5f), 1);
-    w.at(i, j, k) = w_.sample({from.x, from.y, from.z + 0.5f});
+  for_each_cell([&](int i, int j, int k) {
+    const glm::vec3 from = departure(i, j, k), ahead = cell(i, j, k) + displacement(i, j, k, 1);
+    const auto corrected = [&](const CellField& now, const CellField& there) {
+      float low, high;
+      now.sample(from, low, high);
+      return std::clamp(there.at(i, j, k) + 0.5f * (now.at(i, j, k) - there.sample(ahead)), low,
+                        high);
+    };
+    smoke_.at(i, j, k) = corrected(smoke, smoke_there);
+    heat_.at(i, j, k) = corrected(heat, heat_there) * (1 - s_.cooling);
+    // The face between this cell and the one before it; half a cell lies between face and lattice.
+    if (i > 0)
+      u.at(i, j, k) = u_.sample(0.5f * (from + departure(i - 1, j, k)) + glm::vec3(.5f, 0, 0));
+    if (j > 0)
+      v.at(i, j, k) = v_.sample(0.5f * (from + departure(i, j - 1, k)) + glm::vec3(0, .5f, 0));
+    if (k > 0)
+      w.at(i, j, k) = w_.sample(0.5f * (from + departure(i, j, k - 1)) + glm::vec3(0, 0, .5f));
   });
   u_ = std::move(u), v_ = std::move(v), w_ = std::move(w);
 }
 
-// MacCormack: there and back again, half of what that lost is put back, within the range of the
-// values that it came from.
-CellField Plume::advected(const CellField& field) const {
-  CellField there = field, result = field;
-  for_each_cell(field, [&](int i, int j, int k) {
-    there.at(i, j, k) = field.sample(departure(cell(i, j, k), 1));
-  });
-  for_each_cell(field, [&](int i, int j, int k) {
-    const float back = there.sample(departure(cell(i, j, k), -1));
-    float low, high;
-    field.sample(departure(cell(i, j, k), 1), low, high);
-    const float corrected = there.at(i, j, k) + 0.5f * (field.at(i, j, k) - back);
-    result.at(i, j, k) = std::clamp(corrected, low, high);
-  });
-  return result;
+void Plume::raise_rows() {
+  int top = 0;
+  for (int k = 0; k < s_.nz; ++k)
+    for (int j = top; j < rows_; ++j)
+      for (int i = 0; i < s_.nx; ++i)
+        if (smoke_.at(i, j, k) > kTraceSmoke) top = j;
+  rows_ = std::clamp(top + kRowsAhead, rows_, s_.ny);
 }
 
 void Plume::step() {
@@ -234,10 +249,8 @@ void Plume::step() {
   push();
   confine();
   project();
-  smoke_ = advected(smoke_);
-  heat_ = advected(heat_);
-  advect_velocity();
-  for_each_cell(heat_, [&](int i, int j, int k) { heat_.at(i, j, k) *= 1 - s_.cooling; });
+  advect();
+  raise_rows();
   ++steps_;
 }
 

@@ -37,11 +37,12 @@ class CellField {
 // Stable fluids (Stam, 1999) for a buoyant plume, y up, on a staggered grid in units of cells and
 // steps: velocity by semi-Lagrangian steps, smoke and heat by MacCormack's with clamping (Selle et
 // al., 2008), vorticity confinement (Fedkiw et al., 2001), pressure by red-black SOR from the last
-// step's. Walls and floor are solid, the top is open. The same bits for any number of threads.
+// step's. Walls and floor are solid, the top is open; rows well above the smoke rest until it
+// comes. The same bits for any number of threads.
 struct PlumeSettings {
-  int nx = 96, ny = 160, nz = 96;
-  float source_radius = 9, buoyancy = 0.034f, confinement = 0.42f, cooling = 0.0045f;
-  int pressure_sweeps = 28;
+  int nx = 80, ny = 144, nz = 80;
+  float source_radius = 9, buoyancy = 0.15f, confinement = 0.42f, cooling = 0.005f;
+  int pressure_sweeps = 24;
   std::uint64_t seed = 3;
 };
 
@@ -54,17 +55,20 @@ class Plume {
 
  private:
   glm::vec3 velocity(glm::vec3 p) const;
-  glm::vec3 departure(glm::vec3 p, float direction) const;
+  glm::vec3 centre_velocity(int i, int j, int k) const;
+  glm::vec3 displacement(int i, int j, int k, float direction) const;
+  template <class Visit>
+  void for_each_cell(Visit&& visit) const;
   void emit();
   void push();
   void confine();
   void project();
-  void advect_velocity();
-  CellField advected(const CellField& field) const;
+  void advect();
+  void raise_rows();
   float divergence(int i, int j, int k) const;
 
   PlumeSettings s_;
-  int steps_ = 0;
+  int steps_ = 0, rows_;
   CellField u_, v_, w_;  // on the lower faces of the cells, and one more
   CellField smoke_, heat_, pressure_;
 };
