@@ -1,15 +1,17 @@
-# nepho_add_tests(<name> LABELS ... SOURCES ... LIBS ... [DEFINES ...] [ENV ...] [WHOLE]): a
-# GoogleTest program in the layer `tests`. One ctest entry per TEST, or one in all with WHOLE (for
-# programs whose set-up costs more than their tests: an OpenGL context, a compiled shader).
+# nepho_add_tests(<name> LABELS ... SOURCES ... LIBS ... [DEFINES ...] [ENV ...] [FIXTURES ...]
+# [WHOLE]): a GoogleTest program in the layer `tests`. One ctest entry per TEST, or one in all with
+# WHOLE (for programs whose set-up costs more than their tests: an OpenGL context, a compiled
+# shader). FIXTURES are ctest's FIXTURES_REQUIRED.
 function(nepho_add_tests name)
-  cmake_parse_arguments(A "WHOLE" "" "LABELS;SOURCES;LIBS;DEFINES;ENV" ${ARGN})
+  cmake_parse_arguments(A "WHOLE" "" "LABELS;SOURCES;LIBS;DEFINES;ENV;FIXTURES" ${ARGN})
   nepho_add_test_program(${name} SOURCES ${A_SOURCES} LIBS ${A_LIBS} DEFINES ${A_DEFINES})
   if(A_WHOLE)
     add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}")
+    set_tests_properties(${name} PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}"
+      FIXTURES_REQUIRED "${A_FIXTURES}")
   else()
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}.
-      PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}")
+      PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}" FIXTURES_REQUIRED "${A_FIXTURES}")
   endif()
 endfunction()
 
