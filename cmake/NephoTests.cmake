@@ -9,10 +9,15 @@ function(nepho_add_tests name)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}"
       FIXTURES_REQUIRED "${A_FIXTURES}")
-  else()
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}.
-      PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}" FIXTURES_REQUIRED "${A_FIXTURES}")
+    return()
   endif()
+  # gtest_discover_tests flattens lists of values, so properties are set after it, for the names
+  # that it leaves behind.
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}. TEST_LIST ${name}_TESTS)
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/${name}_properties.cmake)
+  file(WRITE ${script} "set_tests_properties(\${${name}_TESTS} PROPERTIES LABELS \"${A_LABELS}\"
+  ENVIRONMENT \"${A_ENV}\" FIXTURES_REQUIRED \"${A_FIXTURES}\")\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
 endfunction()
 
 function(nepho_add_test_program name)
