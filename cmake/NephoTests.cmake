@@ -1,3 +1,6 @@
+# Real files are never part of the project; the tests that read them exist where this names them.
+set(NEPHO_REAL_DATA "$ENV{NEPHO_REAL_DATA}" CACHE PATH "Folder of real files; empty: synthetic only")
+
 # nepho_add_tests(<name> LABELS ... SOURCES ... LIBS ... [DEFINES ...] [ENV ...] [FIXTURES ...]
 # [WHOLE]): a GoogleTest program in the layer `tests`. One ctest entry per TEST, or one in all with
 # WHOLE (for programs whose set-up costs more than their tests: an OpenGL context, a compiled
