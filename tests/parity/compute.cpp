@@ -18,11 +18,22 @@ std::string info_log(unsigned object, decltype(glGetShaderiv) get,
   return text;
 }
 
+// A mutant changes the shader alone: parity must see it.
+std::string shader_text() {
+  std::string text = nepho_shader_table;
+#ifdef NEPHO_MUTANT_SHADER
+  text.insert(text.find('\n') + 1, "#define NEPHO_MUTANT_USUAL_HG\n");
+#endif
+  return text;
+}
+
 // Lives as long as the test program's context: compiled once for all cases.
 unsigned table_program() {
   static const unsigned made = [] {
     const unsigned shader = glCreateShader(GL_COMPUTE_SHADER);
-    glShaderSource(shader, 1, &nepho_shader_table, nullptr);
+    const std::string text = shader_text();
+    const char* const start = text.c_str();
+    glShaderSource(shader, 1, &start, nullptr);
     glCompileShader(shader);
     int good = 0;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
