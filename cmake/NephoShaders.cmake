@@ -23,20 +23,3 @@ function(nepho_embed_shaders target)
     set_property(GLOBAL APPEND PROPERTY NEPHO_FLAT_SHADERS ${out}/${name}.comp)
   endforeach()
 endfunction()
-
-# nepho_add_shader_test(<permutation> MACROS NAME=value ... SHADERS ...): these shaders parse with
-# these NEPHO_ macros, which the program defines at run time.
-function(nepho_add_shader_test permutation)
-  cmake_parse_arguments(A "" "" "MACROS;SHADERS" ${ARGN})
-  if(NOT NEPHO_GLSLANG)
-    message(STATUS "nephoscope: left out shader test ${permutation}: no glslangValidator")
-    return()
-  endif()
-  list(TRANSFORM A_MACROS PREPEND -DNEPHO_)
-  get_property(shaders GLOBAL PROPERTY NEPHO_FLAT_SHADERS)
-  list(JOIN A_SHADERS "|" wanted)
-  list(FILTER shaders INCLUDE REGEX "/(${wanted})\\.comp$")
-  add_test(NAME shaders.${permutation}_parses COMMAND
-    sh ${PROJECT_SOURCE_DIR}/tests/shaders/parse.sh ${NEPHO_GLSLANG} ${A_MACROS} -- ${shaders})
-  set_tests_properties(shaders.${permutation}_parses PROPERTIES LABELS unit)
-endfunction()

@@ -1,19 +1,26 @@
 #!/bin/sh
-# parse.sh VALIDATOR DEFINES... -- SHADERS...: each shader alone (-l: it takes -D only when linking,
-# and would link all the shaders of one call into one program).
+# parse.sh VALIDATOR FOLDER PROGRAM RENDER_ARGUMENTS...: draws something small, takes the switches
+# that the program says it compiled its shaders with, and has every shader in FOLDER parsed with
+# them. A driver may take what the language forbids; the validator does not.
 set -eu
 validator=$1
-shift
-defines=
-while [ "$1" != -- ]; do
-  defines="$defines $1"
-  shift
-done
-shift
+folder=$2
+shift 2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+"$@" --size 16x9 --probe-pixels 0 --explain -o "$scratch/picture.pfm" >"$scratch/said"
+sed -n '/^shader switches:/,/^[^ ]/s/^  /#define NEPHO_/p' "$scratch/said" >"$scratch/switches"
+[ -s "$scratch/switches" ] || { echo "parse: the program names no switches"; exit 1; }
 failed=0
-for shader in "$@"; do
-  # shellcheck disable=SC2086  # defines are words
-  "$validator" -l $defines "$shader" || failed=$((failed + 1))
+count=0
+for shader in "$folder"/*.comp; do
+  name=$(basename "$shader")
+  # LIT says that there are light tiles to read: not while they are made.
+  case $name in light_*) drop=NEPHO_LIT ;; *) drop=nothing ;; esac
+  { sed -n 1p "$shader"; grep -v " $drop " "$scratch/switches"; sed 1d "$shader"; } >"$scratch/$name"
+  "$validator" "$scratch/$name" || failed=$((failed + 1))
+  count=$((count + 1))
 done
-echo "parse: $failed of $# refused"
-[ $# -gt 0 ] && [ "$failed" = 0 ]
+echo "parse: $failed of $count refused, with" $(sed 's/#define NEPHO_//' "$scratch/switches" |
+  grep -v EACH)
+[ "$count" -gt 0 ] && [ "$failed" = 0 ]
