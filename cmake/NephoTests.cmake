@@ -1,16 +1,26 @@
-# nepho_add_tests(<name> LABELS ... SOURCES ... LIBS ... [DEFINES ...] [ENV ...] [WHOLE]): a
-# GoogleTest program in the layer `tests`. One ctest entry per TEST, or one in all with WHOLE (for
-# programs whose set-up costs more than their tests: an OpenGL context, a compiled shader).
+# Real files are never part of the project; the tests that read them exist where this names them.
+set(NEPHO_REAL_DATA "$ENV{NEPHO_REAL_DATA}" CACHE PATH "Folder of real files; empty: synthetic only")
+
+# nepho_add_tests(<name> LABELS ... SOURCES ... LIBS ... [DEFINES ...] [ENV ...] [FIXTURES ...]
+# [WHOLE]): a GoogleTest program in the layer `tests`. One ctest entry per TEST, or one in all with
+# WHOLE (for programs whose set-up costs more than their tests: an OpenGL context, a compiled
+# shader). FIXTURES are ctest's FIXTURES_REQUIRED.
 function(nepho_add_tests name)
-  cmake_parse_arguments(A "WHOLE" "" "LABELS;SOURCES;LIBS;DEFINES;ENV" ${ARGN})
+  cmake_parse_arguments(A "WHOLE" "" "LABELS;SOURCES;LIBS;DEFINES;ENV;FIXTURES" ${ARGN})
   nepho_add_test_program(${name} SOURCES ${A_SOURCES} LIBS ${A_LIBS} DEFINES ${A_DEFINES})
   if(A_WHOLE)
     add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}")
-  else()
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}.
-      PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}")
+    set_tests_properties(${name} PROPERTIES LABELS "${A_LABELS}" ENVIRONMENT "${A_ENV}"
+      FIXTURES_REQUIRED "${A_FIXTURES}")
+    return()
   endif()
+  # gtest_discover_tests flattens lists of values, so properties are set after it, for the names
+  # that it leaves behind.
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}. TEST_LIST ${name}_TESTS)
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/${name}_properties.cmake)
+  file(WRITE ${script} "set_tests_properties(\${${name}_TESTS} PROPERTIES LABELS \"${A_LABELS}\"
+  ENVIRONMENT \"${A_ENV}\" FIXTURES_REQUIRED \"${A_FIXTURES}\")\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
 endfunction()
 
 function(nepho_add_test_program name)

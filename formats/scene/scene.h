@@ -18,7 +18,7 @@ struct SourceParameter {
   double number = 0;       // in SI, converted at the door
   std::string text;        // for words ("sphere", "y")
   bool is_text = false;
-  std::string where;  // file, line, column and field, for messages
+  std::string where = {};  // file, line, column and field, for messages
 };
 
 struct GeodeticPlace {
@@ -34,7 +34,7 @@ struct VolumeSpec {
   std::optional<Phase> phase;          // absent: the source's own
   std::optional<glm::dvec3> co_albedo;
   std::optional<double> time_s;  // absent: the first
-  std::string where;             // file, line, column and field, for messages
+  std::string where = {};        // file, line, column and field, for messages
 };
 
 struct Camera {

@@ -119,7 +119,7 @@ void add_child(const double* samples, const float* variance, const HatWeights& h
       for (std::size_t i = 0; i < size[0]; ++i) {
         const std::size_t at = i + j * kStride[1] + k * kStride[2];
         parent.mean[first + at] += mean[at];
-        parent.square[first + at] += square[at];
+        parent.square[first + at] += float(square[at]);
       }
 }
 
@@ -168,6 +168,18 @@ void refine(const Lattice& lattice, NodeKey node, const double* samples, NodeKey
     for (std::size_t h = 0; h < kStride[2]; ++h)
       refined[h + s * kStride[2]] = lerp(low[h], low[h + kStride[2]], z.fraction[s]);
   }
+}
+
+double greatest_gap(const BrickSamples& own, const BrickSamples& low, const BrickSamples& high) {
+  // One maximum per column of the brick: independent, so that they run side by side.
+  std::array<double, kBrickSamples * kBrickSamples> worst{};
+  for (std::size_t at = 0; at < own.size(); at += worst.size())
+    for (std::size_t h = 0; h < worst.size(); ++h) {
+      const double below = low[at + h] - own[at + h], above = own[at + h] - high[at + h];
+      const double gap = below > above ? below : above;
+      worst[h] = gap > worst[h] ? gap : worst[h];
+    }
+  return *std::ranges::max_element(worst);
 }
 
 void closed_form_samples(const Lattice& lattice, NodeKey key, const SparsePyramid::Region& region,

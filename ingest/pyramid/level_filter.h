@@ -24,7 +24,7 @@ HatWeights whole_hats(const Chart& chart, const Lattice& lattice, NodeKey key);
 // Sums of c and of c^2 + variance, in a parent's 9^3.
 struct FilterSums {
   double* mean;
-  double* square;
+  float* square;
 };
 // Adds one child's samples (and unresolved variances, null = 0).
 void add_child(const double* samples, const float* variance, const HatWeights& hats, SplitMask mask,
@@ -33,6 +33,9 @@ void add_child(const double* samples, const float* variance, const HatWeights& h
 // A node's own trilinear field at the 9^3 sample positions of a descendant (or of itself).
 void refine(const Lattice& lattice, NodeKey node, const double* samples, NodeKey descendant,
             double* refined);
+
+// How far `own` is outside [low, high] at the worst sample; 0 where it is within.
+double greatest_gap(const BrickSamples& own, const BrickSamples& low, const BrickSamples& high);
 
 // Samples and unresolved variances of a node whose region is a closed form. A block's filtered
 // indicator is separable: hats of hats are hats, so each axis is a sum of an arithmetic series.

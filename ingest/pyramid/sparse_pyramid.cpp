@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "bricks/box_chart.h"
-#include "bricks/quantise.h"
 #include "pyramid/level_filter.h"
+#include "pyramid/pyramid_level.h"
 #include "pyramid/touching.h"
 
 // Mistakes for the tests to find, each one that was made or nearly made.
@@ -34,36 +33,6 @@ namespace {
 using Region = SparsePyramid::Region;
 constexpr std::size_t kVolume = kBrickVolume;
 
-// What a stored node knows besides its samples; of the node and all below where not said otherwise.
-struct Record {
-  double least = 0, most = 0;
-  double error = 0;     // sup |own trilinear - finest|
-  double variance = 0;  // mean, this level
-  std::uint8_t children = 0;
-  bool empty = true;  // this level
-};
-
-float decoded_floor(double least) {
-  const double low = least * (1 - 4 * double(std::numeric_limits<float>::epsilon()));
-  const auto f = float(low);
-  return double(f) <= low ? f : std::nextafter(f, 0.0f);
-}
-
-// Mean over the node of the interpolant of its samples: half weight on faces.
-double node_mean(const float* samples) {
-  constexpr auto weight = [](std::size_t s) { return s == 0 || s == kBrickCells ? 0.5 : 1.0; };
-  double sum = 0;
-  for (std::size_t k = 0, at = 0; k < kBrickSamples; ++k)
-    for (std::size_t j = 0; j < kBrickSamples; ++j)
-      for (std::size_t i = 0; i < kBrickSamples; ++i, ++at)
-        sum += weight(i) * weight(j) * weight(k) * double(samples[at]);
-  return sum / (kBrickCells * kBrickCells * kBrickCells);
-}
-
-bool all_zero(const double* samples) {
-  return std::all_of(samples, samples + kVolume, [](double c) { return c == 0; });
-}
-
 template <class Body>
 void parallel(std::size_t count, Body&& body) {
   tbb::parallel_for(std::size_t{0}, count, std::forward<Body>(body));
@@ -72,20 +41,7 @@ void parallel(std::size_t count, Body&& body) {
 }  // namespace
 
 struct SparsePyramid::Impl {
-  struct Level {
-    std::vector<NodeKey> keys;  // ascending
-    std::vector<Record> records;
-    std::vector<double> samples;   // 9^3 per node; none at the finest level
-    std::vector<double> squares;   // while building: sums of c^2
-    std::vector<float> variances;  // while building: unresolved, per sample
-
-    std::optional<std::size_t> find(NodeKey key) const {
-      const auto found = std::ranges::lower_bound(keys, key);
-      if (found == keys.end() || *found != key) return std::nullopt;
-      return std::size_t(found - keys.begin());
-    }
-    const double* at(std::size_t node) const { return &samples[node * kVolume]; }
-  };
+  using Level = PyramidLevel;
 
   const Chart& chart;
   Lattice lattice;
@@ -97,10 +53,15 @@ struct SparsePyramid::Impl {
     if (const auto* box = dynamic_cast<const BoxChart*>(&chart))
       blocks_allowed = !box->periodic().x && !box->periodic().y;
     levels.resize(std::size_t(lattice.max_level()) + 1);
-    levels.back().keys = std::exchange(field.nodes, {});
-    levels.back().records.resize(levels.back().keys.size());
-    summarise_finest();
+    list_nodes();
+    if (lattice.max_level() == 0)
+      for (std::size_t node = 0; node < levels[0].keys.size(); ++node) {
+        BrickSamples samples;
+        field.samples(levels[0].keys[node], samples.data());
+        summarise_finest(node, samples);
+      }
     for (int level = lattice.max_level() - 1; level >= 0; --level) build(level);
+    levels[0].drop_variances();
     bound_errors();
   }
 
@@ -115,15 +76,20 @@ struct SparsePyramid::Impl {
     return r;
   }
 
-  // The closed form of a node that is not stored. Where the source was too careful to call it one,
-  // no stored node lies below it, so that its parts are closed forms, and one and the same.
+  // The closed form of a node that is not stored: its own or, where a source is surer of the large
+  // than of the small, that of the node that it is part of.
   Region region(NodeKey key) const {
     if (!field.region) return {.constant = true};
-    for (;;) {
+    const std::optional<Region> r = closed_form(key);
+    if (!r) throw std::logic_error("SparsePyramid: a node is neither stored nor a closed form");
+    return *r;
+  }
+  bool is_closed(NodeKey key) const { return closed_form(key).has_value(); }
+  std::optional<Region> closed_form(NodeKey key) const {
+    for (;; key = lattice.parent(key)) {
       const Region r = asked(key);
       if (r.closed_form()) return r;
-      if (is_finest(key.level())) return {.constant = true, .value = r.value};
-      key = key.child(lattice.split_axes(key.level()), 0);
+      if (key.level() == 0) return std::nullopt;
     }
   }
 
@@ -138,62 +104,73 @@ struct SparsePyramid::Impl {
       return;
     }
     std::copy_n(level.at(*node), kVolume, samples);
-    if (variance) std::copy_n(&level.variances[*node * kVolume], kVolume, variance);
+    if (variance) std::ranges::copy(*level.variances[*node], variance);
   }
 
-  void summarise_finest() {
-    Level& level = levels.back();
-    parallel(level.keys.size(), [&](std::size_t node) {
-      BrickSamples samples;
-      field.samples(level.keys[node], samples.data());
-      Record& record = level.records[node];
-      const auto [least, most] = std::ranges::minmax(samples);
-      if (!std::ranges::all_of(samples, [](double c) { return c >= 0 && std::isfinite(c); }))
-        throw std::domain_error("SparsePyramid: a finest sample is negative or not finite");
-      record.least = least;
-      record.most = most;
-      record.empty = most == 0;
-    });
+  // The finest samples are looked at as they are gathered.
+  void summarise_finest(std::size_t node, const BrickSamples& samples) {
+    Record& record = levels.back().records[node];
+    if (!std::ranges::all_of(samples, [](double c) { return c >= 0 && std::isfinite(c); }))
+      throw std::domain_error("SparsePyramid: a finest sample is negative or not finite");
+    const auto [least, most] = std::ranges::minmax(samples);
+    record.least = least;
+    record.most = most;
+    record.empty = record.most == 0;
   }
 
-  // Parents of what is stored, and whoever touches them and is no closed form: the filter carries
-  // values across a face, so that a node may hold something on its faces only.
-  std::vector<NodeKey> keys_of(int level) const {
-    std::vector<NodeKey> parents;
-    for (const NodeKey key : at(level + 1).keys)
-      if (const NodeKey parent = lattice.parent(key); parents.empty() || parents.back() != parent)
-        parents.push_back(parent);
-    std::ranges::sort(parents);
-    parents.erase(std::ranges::unique(parents).begin(), parents.end());
-    std::vector<NodeKey> keys = parents;
-    for (const NodeKey parent : parents)
-      for_each_touching(chart, lattice, parent, [&](NodeKey other) { keys.push_back(other); });
-    std::ranges::sort(keys);
-    keys.erase(std::ranges::unique(keys).begin(), keys.end());
-    if (field.region)
-      std::erase_if(keys, [&](NodeKey key) {
-        return !std::ranges::binary_search(parents, key) && asked(key).closed_form();
-      });
-    return keys;
+  // What is listed before any filtering: with regions all nodes that are no closed form, from the
+  // roots down; without them the finest that the source names.
+  void list_nodes() {
+    if (field.region) {
+      auto keys = collect_nodes(
+          chart, lattice, [this](NodeKey key) { return asked(key); }, field.most_nodes);
+      for (std::size_t l = 0; l < keys.size(); ++l) levels[l].keys = std::move(keys[l]);
+    } else {
+      levels.back().keys = std::exchange(field.nodes, {});
+    }
+    levels.back().records.resize(levels.back().keys.size());
   }
 
   void build(int l) {
     Level& level = at(l);
-    level.keys = keys_of(l);
-    const std::size_t count = level.keys.size();
-    level.samples.assign(count * kVolume, 0.0);
-    level.squares.assign(count * kVolume, 0.0);
-    parallel(count, [&](std::size_t node) { gather_children(level, node); });
-    at(l + 1).variances = {};
-    parallel(count, [&](std::size_t node) { merge_faces(level, node); });
-    if (!field.region) drop_zeros(l);
+    std::vector<NodeKey> parents;
+    for (const NodeKey key : at(l + 1).keys)
+      if (const NodeKey parent = lattice.parent(key); parents.empty() || parents.back() != parent)
+        parents.push_back(parent);
+    level.insert(std::move(parents));
+    parallel(level.keys.size(), [&](std::size_t node) { gather_children(level, node); });
+    level.insert(touched(level));
+    at(l + 1).drop_variances();
+    parallel(level.keys.size(), [&](std::size_t node) { merge_faces(level, node); });
     level.records.resize(level.keys.size());
-    level.variances.resize(level.keys.size() * kVolume);
     parallel(level.keys.size(), [&](std::size_t node) { summarise(level, node); });
-    level.squares = {};
   }
 
-  void gather_children(Level& level, std::size_t node) const {
+  // The filter carries values across a face, so that a node may hold something on its faces only:
+  // the nodes beside sums that are not zero. Their children are closed forms of no other value.
+  std::vector<NodeKey> touched(const Level& level) const {
+    std::vector<std::vector<NodeKey>> found(level.keys.size());
+    parallel(level.keys.size(), [&](std::size_t node) {
+      const auto place = [&](NodeKey other) { return level.find(other); };
+      const Touching touching(chart, lattice, level.keys[node], place);
+      std::array<bool, 27> seen{};  // all samples of a face, edge or corner touch the same nodes
+      for (std::uint32_t at = 0; at < kVolume; ++at) {
+        const Index3 s = {at % 9, at / 9 % 9, at / 81};
+        const auto side = [](std::uint32_t c) { return c == 0 ? 0u : c < kBrickCells ? 1u : 2u; };
+        bool& known = seen[side(s[0]) + 3 * side(s[1]) + 9 * side(s[2])];
+        if (known || (*level.samples[node])[at] == 0) continue;
+        known = true;
+        for (const Touch& touch : touching.places(s))
+          if (!touch.node && !(field.region && is_closed(touch.key)))
+            found[node].push_back(touch.key);
+      }
+    });
+    std::vector<NodeKey> keys;
+    for (const auto& some : found) keys.insert(keys.end(), some.begin(), some.end());
+    return keys;
+  }
+
+  void gather_children(Level& level, std::size_t node) {
     const NodeKey key = level.keys[node];
     const SplitMask mask = lattice.split_axes(key.level());
     BrickSamples samples;
@@ -202,9 +179,11 @@ struct SparsePyramid::Impl {
       if (octant & ~mask) continue;
       const NodeKey child = key.child(mask, octant);
       fetch(child, samples.data(), variance.data());
+      if (is_finest(child.level()))
+        if (const auto place = levels.back().find(child)) summarise_finest(*place, samples);
       if (all_zero(samples.data())) continue;
       add_child(samples.data(), variance.data(), owned_hats(chart, lattice, child), mask, octant,
-                {&level.samples[node * kVolume], &level.squares[node * kVolume]});
+                {level.samples[node]->data(), level.variances[node]->data()});
     }
   }
 
@@ -230,8 +209,8 @@ struct SparsePyramid::Impl {
           const auto [mean, square] = merged(level, places, volume, closed);
           for (const Touch& place : places) {
             if (!place.node) continue;
-            level.samples[*place.node * kVolume + place.offset] = mean;
-            level.squares[*place.node * kVolume + place.offset] = square;
+            (*level.samples[*place.node])[place.offset] = mean;
+            (*level.variances[*place.node])[place.offset] = float(square);
           }
         }
   }
@@ -257,43 +236,28 @@ struct SparsePyramid::Impl {
         const double c = samples[place.offset];
         return {c, c * c + double(variance[place.offset])};
       }
-      sum += level.samples[*place.node * kVolume + place.offset];
-      square += level.squares[*place.node * kVolume + place.offset];
+      sum += (*level.samples[*place.node])[place.offset];
+      square += double((*level.variances[*place.node])[place.offset]);
     }
     return {sum / volume * NEPHO_MUTATION_DRIFT, square / volume};
-  }
-
-  // Without `region`, neighbours were taken in on suspicion.
-  void drop_zeros(int l) {
-    Level& level = at(l);
-    std::size_t kept = 0;
-    std::vector<NodeKey> parents;
-    for (const NodeKey key : at(l + 1).keys) parents.push_back(lattice.parent(key));
-    std::ranges::sort(parents);
-    for (std::size_t node = 0; node < level.keys.size(); ++node) {
-      const double* samples = level.at(node);
-      if (all_zero(samples) && !std::ranges::binary_search(parents, level.keys[node])) continue;
-      std::copy_n(samples, kVolume, &level.samples[kept * kVolume]);
-      std::copy_n(&level.squares[node * kVolume], kVolume, &level.squares[kept * kVolume]);
-      level.keys[kept++] = level.keys[node];
-    }
-    level.keys.resize(kept);
-    level.samples.resize(kept * kVolume);
-    level.samples.shrink_to_fit();
   }
 
   void summarise(Level& level, std::size_t node) {
     const NodeKey key = level.keys[node];
     const double* samples = level.at(node);
     Record& record = level.records[node];
-    for (std::size_t at = node * kVolume; at < (node + 1) * kVolume; ++at)
-      level.variances[at] =
-          float(std::max(0.0, level.squares[at] - level.samples[at] * level.samples[at]));
+    float* variances = level.variances[node]->data();
+    for (std::size_t s = 0; s < kVolume; ++s) {
+      // Sums in float resolve no less than a millionth: what is constant has no variance.
+      const double square = samples[s] * samples[s];
+      const double variance = double(variances[s]) - square;
+      variances[s] = variance > 1e-6 * square ? float(variance) : 0;
+    }
     const auto [least, most] = std::minmax_element(samples, samples + kVolume);
     record.least = *least;
     record.most = *most;
     record.empty = *most == 0;
-    record.variance = node_mean(&level.variances[node * kVolume]);
+    record.variance = node_mean(variances);
 #ifdef NEPHO_MUTANT_NOT_GROWN
     record.most = 0;  // what lies below, and not what the filter carried in from the neighbours
 #endif
@@ -366,10 +330,12 @@ struct SparsePyramid::Impl {
   }
 
   void compare_ends(NodeKey key, double* worst) const {
-    const SplitMask mask = lattice.split_axes(key.level());
-    for (SplitMask octant = 0; octant <= kSplitXyz; ++octant) {
-      if (octant & ~mask) continue;
-      const NodeKey child = key.child(mask, octant);
+    std::vector<std::pair<NodeKey, const double*>> ancestors;  // itself first
+    for (NodeKey a = key;; a = lattice.parent(a)) {
+      ancestors.emplace_back(a, at(a.level()).at(*at(a.level()).find(a)));
+      if (a.level() == 0) break;
+    }
+    for (const NodeKey child : lattice.children(key)) {
       const bool stored = at(child.level()).find(child).has_value();
       if (stored && !is_finest(child.level())) continue;
       BrickSamples low, high;
@@ -381,13 +347,11 @@ struct SparsePyramid::Impl {
         low.fill(r.block ? std::min(r.value, r.outside) : r.value);
         high.fill(r.block ? std::max(r.value, r.outside) : r.value);
       }
-      NodeKey ancestor = key;
-      for (int a = key.level(); a >= 0; --a) {
+      for (const auto& [ancestor, samples] : ancestors) {
         BrickSamples own;
-        refine(lattice, ancestor, at(a).at(*at(a).find(ancestor)), child, own.data());
-        for (std::size_t s = 0; s < kVolume; ++s)
-          worst[a] = std::max({worst[a], own[s] - low[s], high[s] - own[s]});
-        if (a > 0) ancestor = lattice.parent(ancestor);
+        refine(lattice, ancestor, samples, child, own.data());
+        double& most = worst[ancestor.level()];
+        most = std::max(most, greatest_gap(own, low, high));
       }
     }
   }
@@ -400,17 +364,7 @@ SparsePyramid::SparsePyramid(SparsePyramid&&) noexcept = default;
 SparsePyramid& SparsePyramid::operator=(SparsePyramid&&) noexcept = default;
 
 NodeSummary SparsePyramid::summary(NodeKey key) const {
-  const Record record = impl_->record_of(key);
-  NodeSummary summary;
-  summary.min_extinction_per_m = decoded_floor(record.least);
-  summary.max_extinction_per_m = decoded_bound(record.most);
-  summary.constant = record.least == record.most;
-  summary.constant_extinction_per_m = summary.constant ? float(record.most) : 0;
-  summary.unresolved_variance_per_m2 = record.variance;
-  summary.error_bound_per_m = record.error;
-  summary.children = record.children;
-  summary.empty = record.empty;
-  return summary;
+  return to_summary(impl_->record_of(key));
 }
 
 void SparsePyramid::samples(NodeKey key, double* samples) const {
@@ -424,9 +378,7 @@ void SparsePyramid::samples(NodeKey key, double* samples) const {
 
 std::uint64_t SparsePyramid::bytes() const {
   std::uint64_t bytes = sizeof(Impl) + impl_->levels.capacity() * sizeof(Impl::Level);
-  for (const Impl::Level& level : impl_->levels)
-    bytes += level.keys.capacity() * sizeof(NodeKey) + level.records.capacity() * sizeof(Record) +
-             level.samples.capacity() * sizeof(double) + level.variances.capacity() * sizeof(float);
+  for (const Impl::Level& level : impl_->levels) bytes += level.bytes();
   return bytes;
 }
 

@@ -34,14 +34,16 @@ class SparsePyramid {
     bool closed_form() const { return constant || block; }
   };
   struct Field {
-    // All finest-level nodes whose region is no closed form (without `region`: all whose closed 9^3
-    // samples are not all zero), ascending keys. collect_nodes() makes it from `region`.
+    // Without `region`: all finest-level nodes whose closed 9^3 samples are not all zero, ascending
+    // keys. With it: left empty, the pyramid finds them from the roots down.
     std::vector<NodeKey> nodes;
     // The finest samples of one such node: 9^3, x fastest, 1/m, >= 0 and finite. Thread-safe; kept
     // and called for every read of a finest node.
     std::function<void(NodeKey, double* samples)> samples;
     // Any node, thread-safe, kept. Null: nodes not listed are zero.
     std::function<Region(NodeKey)> region;
+    // Throws std::length_error where `region` leaves more than this on one level.
+    std::size_t most_nodes = std::size_t(-1);
   };
 
   // Builds in parallel, same bits for any number of threads. Keeps a reference to `chart`.
@@ -60,10 +62,11 @@ class SparsePyramid {
   std::unique_ptr<Impl> impl_;
 };
 
-// The finest nodes that no closed form covers, found from the roots down: cost follows the nodes in
-// which something varies. Throws std::length_error above `most` nodes.
-std::vector<NodeKey> collect_nodes(const Chart& chart, const Lattice& lattice,
-                                   const std::function<SparsePyramid::Region(NodeKey)>& region,
-                                   std::size_t most = std::size_t(-1));
+// Nodes that no closed form covers, by level, ascending, found from the roots down: cost follows
+// the nodes in which something varies. Throws std::length_error above `most` nodes on a level.
+std::vector<std::vector<NodeKey>> collect_nodes(
+    const Chart& chart, const Lattice& lattice,
+    const std::function<SparsePyramid::Region(NodeKey)>& region,
+    std::size_t most = std::size_t(-1));
 
 }  // namespace nepho

@@ -8,6 +8,7 @@
 #include "bricks/box_chart.h"
 #include "bricks/shell_chart.h"
 #include "core/error.h"
+#include "gl/atlas.h"
 #include "optics/phase_table.h"
 
 namespace nepho::gl {
@@ -146,6 +147,18 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
 
 }  // namespace
 
+bool lights(const Sky& sky) {
+  const glm::dvec3 black(0.0);
+  return sky.zenith_W_per_m2_sr_nm != black || sky.horizon_W_per_m2_sr_nm != black ||
+         sky.below_W_per_m2_sr_nm != black;
+}
+
+Refinement refinement_of(const RenderRequest& request) {
+  Refinement refinement{request.camera, request.settings, {}};
+  refinement.cost.total = lights(request.sky) ? bytes_with_sky : bytes_without_sky;
+  return refinement;
+}
+
 GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
   GpuScene scene;
   const RenderSettings& settings = request.settings;
@@ -155,10 +168,7 @@ GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
   scene.frame.height = settings.height;
   scene.frame.step_voxels = float(settings.step_voxels.value_or(2));
   scene.frame.tolerance = float(settings.tolerance);
-  const Sky& sky = request.sky;
-  scene.sky = sky.zenith_W_per_m2_sr_nm != glm::dvec3(0) ||
-              sky.horizon_W_per_m2_sr_nm != glm::dvec3(0) ||
-              sky.below_W_per_m2_sr_nm != glm::dvec3(0);
+  scene.sky = lights(request.sky);
   std::vector<Phase> rows;
   for (std::size_t v = 0; v < forest.volumes.size(); ++v) {
     const RenderVolume& volume = request.volumes[v];

@@ -26,6 +26,11 @@ struct GpuScene {
   bool has_box = false, has_shell = false, absorbs = false, sky = false;
 };
 
+// What refinement goes by: the request, and what its tiles cost here.
+Refinement refinement_of(const RenderRequest& request);
+// A sky that is not black lights the clouds: the light tiles then hold its visibility too.
+bool lights(const Sky& sky);
+
 GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest);
 
 }  // namespace nepho::gl

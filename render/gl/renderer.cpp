@@ -48,6 +48,7 @@ class Renderer {
   void light_pass(const gl::Program& program, int samples);
   void view();
   void read_back();
+  void check_overruns() const;
   void report();
 
   const RenderRequest& request_;
@@ -55,7 +56,7 @@ class Renderer {
   gl::GpuScene scene_;
   std::array<int, 3> atlas_size_{}, light_size_{};
   gl::Texture atlas_, light_atlas_, picture_;
-  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_;
+  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_;
   RenderResult result_;
 };
 
@@ -80,7 +81,15 @@ std::string Renderer::defines(bool lit) const {
     text += "#define NEPHO_" + name + " " + value + "\n";
   };
   define("VOLUMES", std::to_string(scene_.volumes.size()));
-  define("OCTAVES", std::to_string(s.light == Light::kSingle ? 1 : s.octaves));
+  // Loops over volumes and octaves are written out: see shaders/march.glsl.
+  const int octaves = s.light == Light::kSingle ? 1 : s.octaves;
+  std::string each_volume, each_octave;
+  for (std::size_t v = 0; v < scene_.volumes.size(); ++v)
+    each_volume += "NEPHO_DO(" + std::to_string(v) + ") ";
+  for (int n = 1; n < octaves; ++n) each_octave += "NEPHO_DO_OCTAVE(" + std::to_string(n) + ") ";
+  define("EACH_VOLUME", each_volume);
+  define("EACH_OCTAVE", each_octave);
+  define("OCTAVES", std::to_string(octaves));
   if (s.light == Light::kSingle) define("SINGLE");
   if (scene_.has_box) define("BOX");
   if (scene_.has_shell) define("SHELL");
@@ -106,8 +115,10 @@ void Renderer::upload() {
   bricks_ = gl::Buffer(std::span<const BrickRecord>(scene_.bricks));
   phases_ = gl::Buffer(std::span<const float>(scene_.phases));
   lit_ = gl::Buffer(std::span<const LitRecord>(scene_.lit));
+  const std::uint32_t none = 0;
+  overruns_ = gl::Buffer(&none, sizeof none);
   GLuint binding = 0;
-  for (const gl::Buffer* buffer : {&frame_, &volumes_, &nodes_, &bricks_, &phases_, &lit_})
+  for (const gl::Buffer* buffer : {&frame_, &volumes_, &nodes_, &bricks_, &phases_, &lit_, &overruns_})
     buffer->bind(binding++);
   glBindTextureUnit(0, atlas_.id());
   glBindTextureUnit(1, light_atlas_.id());
@@ -175,6 +186,20 @@ void Renderer::read_back() {
   }
 }
 
+// llvmpipe ends all loops of an invocation after 65535 iterations: a picture that lost some is
+// refused, not shown.
+void Renderer::check_overruns() const {
+  std::uint32_t count = 0;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glGetNamedBufferSubData(overruns_.id(), 0, sizeof count, &count);
+  if (count == 0) return;
+  throw Error({.what = "rays needed more steps than this OpenGL device runs",
+               .where = "render",
+               .expected = "at most about 65000 loop iterations for a ray on llvmpipe",
+               .found = std::to_string(count) + " rays that were cut off",
+               .hint = "use longer steps (--step, --tolerance), a smaller --budget-mib, or a GPU"});
+}
+
 void Renderer::report() {
   RenderReport& report = result_.report;
   const auto text = [](GLenum name) {
@@ -224,15 +249,8 @@ void Renderer::report() {
 }
 
 RenderResult Renderer::run() {
-  Refinement refinement{request_.camera, request_.settings, {}};
-  const Sky& sky = request_.sky;
-  const glm::dvec3 dark(0.0);
-  refinement.cost.total = sky.zenith_W_per_m2_sr_nm != dark || sky.horizon_W_per_m2_sr_nm != dark ||
-                                  sky.below_W_per_m2_sr_nm != dark
-                              ? gl::bytes_with_sky
-                              : gl::bytes_without_sky;
   timed("refine and read", [&] {
-    forest_ = build_forest(request_.volumes, refinement);
+    forest_ = build_forest(request_.volumes, gl::refinement_of(request_));
     scene_ = gl::make_gpu_scene(request_, forest_);
     scene_.frame.least_transmittance = exact() ? kLeastTransmittanceExact : kLeastTransmittance;
   });
@@ -240,6 +258,7 @@ RenderResult Renderer::run() {
   light();
   timed("view", [&] { view(); });
   timed("read back", [&] { read_back(); });
+  check_overruns();
   if (request_.settings.probe_pixels > 0)
     timed("error probe",
           [&] { result_.error = estimate_error(request_, forest_, result_.image); });

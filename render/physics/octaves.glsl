@@ -16,8 +16,11 @@ Number octave_power(Number base, int n) {
 Number octave_scattering(int n) {
   return octave_power(octave_a, n);
 }
+Number octave_extinction(int n) {
+  return octave_power(octave_b, n);
+}
 Number octave_transmittance(int n, Number tau_sun) {
-  return exp(-(octave_power(octave_b, n) * tau_sun));
+  return exp(-(octave_extinction(n) * tau_sun));
 }
 Number octave_asymmetry(int n, Number g) {
   return g * octave_power(octave_c, n);

@@ -69,11 +69,17 @@ class BoxRay final : public ChartRay {
     Index3 result;
     for (std::size_t a = 0; a < 3; ++a) {
       const std::int64_t n = cells_[a];
+#if defined(NEPHO_MUTANT_NO_WRAP)
+      result[a] = std::uint32_t(std::clamp<std::int64_t>(cell[a], 0, n - 1));
+#else
       result[a] = std::uint32_t((cell[a] % n + n) % n);
+#endif
     }
     return result;
   }
-  int sub_steps(double, double) const override { return 1; }
+  int sub_steps(double, double) const override {
+    return 1;
+  }
 
  private:
   bool periodic(int axis) const {
@@ -213,6 +219,9 @@ class ShellRay final : public ChartRay {
     return {std::uint32_t(cell[0]), std::uint32_t(cell[1]), std::uint32_t(cell[2])};
   }
   int sub_steps(double length_m, double cells_high) const override {
+#if defined(NEPHO_MUTANT_ONE_SIMPSON_STEP)
+    return 1;
+#endif
     return f64::simpson_steps(length_m * glm::length(direction_), chart_.body().equatorial_m,
                               cells_high * chart_.thickness_m() / count_.z);
   }

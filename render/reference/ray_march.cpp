@@ -215,7 +215,11 @@ class RayMarch::Trace {
       return;
     }
     for (int c = 0; c < 3; ++c)
+#if defined(NEPHO_MUTANT_EULER)
+      result_.radiance_W_per_m2_sr_nm[c] += transmittance_ * s0[c] * x;
+#else
       result_.radiance_W_per_m2_sr_nm[c] += transmittance_ * f64::step_radiance(s0[c], s1[c], x);
+#endif
     transmittance_ *= std::exp(-x);
     result_.optical_depth += x;
   }

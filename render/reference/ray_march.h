@@ -18,7 +18,7 @@ namespace nepho {
 // through all volumes, p_0 the table's phase function, p_n = HG(g c^n); together sum k S / sum k.
 // A step of optical depth x adds T x (S0 e0(x) + (S1 - S0) w1(x)), and is halved while the
 // estimated error of the linear source, T (1 - e^-x) |dS| |d ln S| / 8, is above `source_tolerance`
-// of the pixel's radiance. The ground is the bottom of a shell: black to the sun, `below` to the
+// of the pixel's radiance. The ground is the ellipsoid under a shell: black to the sun, `below` to the
 // eye.
 struct MarchSettings {
   double source_tolerance = 1e-4;

@@ -3,6 +3,7 @@
 
 // Phase function towards the eye times a^n, per octave: the sun is distant, so once per ray.
 vec3 octave_phase[NEPHO_VOLUMES * NEPHO_OCTAVES];
+float octave_rate[NEPHO_OCTAVES];  // b^n, once per ray
 
 layout(std430, binding = 4) readonly buffer PhaseBuffer { float phase_log[]; };  // rows of 1024 x 3
 
@@ -18,24 +19,37 @@ vec3 table_phase(int row, float one_minus_cos) {
   return value;
 }
 
+// Octaves are written out too (NEPHO_EACH_OCTAVE, from 1): powers of literals fold.
+void set_octaves(int volume, float one_minus_cos) {
+#define NEPHO_DO_OCTAVE(n)                    \
+  octave_phase[volume * NEPHO_OCTAVES + n] =  \
+      vec3(octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].asymmetry)));
+  NEPHO_EACH_OCTAVE
+#undef NEPHO_DO_OCTAVE
+}
+
 void begin_lights() {
   vec3 apart = vec3(vec_of(frame.to_sun) - ray_direction);
   float one_minus_cos = 0.5 * dot(apart, apart);
-  for (int v = 0; v < NEPHO_VOLUMES; ++v) {
-    octave_phase[v * NEPHO_OCTAVES] = table_phase(volumes[v].phase_row, one_minus_cos);
-    for (int n = 1; n < NEPHO_OCTAVES; ++n)
-      octave_phase[v * NEPHO_OCTAVES + n] =
-          vec3(octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[v].asymmetry)));
-  }
+#define NEPHO_DO_OCTAVE(n) octave_rate[n] = octave_extinction(n);
+  NEPHO_EACH_OCTAVE
+#undef NEPHO_DO_OCTAVE
+#define NEPHO_DO(v)                                                                              \
+  octave_phase[v * NEPHO_OCTAVES] = table_phase(volumes[v].phase_row, one_minus_cos);            \
+  set_octaves(v, one_minus_cos);
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
 }
 
 // Radiance of one volume at t_m: J / extinction, W m-2 sr-1 nm-1.
 vec3 source_at(int volume, float t_m) {
   vec3 at = walks[volume].light_tile + leaf_cells_at(volume, walks[volume], t_m);
   vec4 light = textureLod(light_atlas, (at + 0.5) / vec3(textureSize(light_atlas, 0)), 0.0);
-  vec3 scattered = vec3(0.0);
-  for (int n = 0; n < NEPHO_OCTAVES; ++n)
-    scattered += octave_phase[volume * NEPHO_OCTAVES + n] * octave_transmittance(n, light.r);
+  vec3 scattered = octave_phase[volume * NEPHO_OCTAVES] * exp(-light.r);
+#define NEPHO_DO_OCTAVE(n) \
+  scattered += octave_phase[volume * NEPHO_OCTAVES + n] * exp(-(octave_rate[n] * light.r));
+  NEPHO_EACH_OCTAVE
+#undef NEPHO_DO_OCTAVE
   vec3 radiance = scattered * vec_of(frame.sun_irradiance);
 #ifdef NEPHO_SKY_LIGHT
   for (int c = 0; c < 3; ++c)
@@ -52,11 +66,13 @@ vec3 source_at(int volume, float t_m) {
 vec3 total_source_at(float t_m) {
   vec3 sum = vec3(0.0);
   float weight = 0.0;
-  for (int v = 0; v < NEPHO_VOLUMES; ++v) {
-    if (walks[v].kind != NODE_BRICK && walks[v].kind != NODE_CONSTANT) continue;
-    float k = max(extinction_at(v, t_m), 1e-30);
-    sum += k * source_at(v, t_m);
-    weight += k;
+#define NEPHO_DO(v)                                                        \
+  if (walks[v].kind == NODE_BRICK || walks[v].kind == NODE_CONSTANT) {     \
+    float k = max(extinction_at(v, t_m), 1e-30);                           \
+    sum += k * source_at(v, t_m);                                          \
+    weight += k;                                                           \
   }
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
   return weight > 0.0 ? sum / weight : vec3(0.0);
 }

@@ -1,7 +1,19 @@
+// Loops over volumes are written out by the host (NEPHO_EACH_VOLUME = NEPHO_DO(0) NEPHO_DO(1) ...):
+// indices are then constants, and llvmpipe, where all loops of an invocation share 65535 iterations,
+// spends none on them. A ray that runs out all the same is counted in `overruns`, never ignored.
+//
 // Marching all volumes at once: segments in which each volume is inside one leaf, steps in which
 // Simpson integrates the sum of their extinctions. Included by the passes.
 
 Walk walks[NEPHO_VOLUMES];
+
+layout(std430, binding = 6) buffer OverrunBuffer { uint overruns; };
+
+// `ended` is set in a loop's body where its condition is about to fail. (The condition itself, asked
+// again after the loop, came out wrong on llvmpipe.)
+void count_overrun(int ended) {
+  if (ended == 0) atomicAdd(overruns, 1u);
+}
 
 float texel8(sampler3D map, vec3 at) {
   vec3 f = fract(at);
@@ -30,7 +42,9 @@ float extinction_at(int volume, float t_m) {
 
 float total_extinction_at(float t_m) {
   float sum = 0.0;
-  for (int v = 0; v < NEPHO_VOLUMES; ++v) sum += extinction_at(v, t_m);
+#define NEPHO_DO(v) sum += extinction_at(v, t_m);
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
   return sum;
 }
 
@@ -53,10 +67,11 @@ float begin_walks(out float ground_m) {
   float first = FAR;
   for (int moved = 0; moved < 2; ++moved) {
     first = FAR;
-    for (int v = 0; v < NEPHO_VOLUMES; ++v) {
-      walks[v] = begin_walk(v);
-      first = min(first, walks[v].leave_m);
-    }
+#define NEPHO_DO(v)         \
+  walks[v] = begin_walk(v); \
+  first = min(first, walks[v].leave_m);
+    NEPHO_EACH_VOLUME
+#undef NEPHO_DO
     ground_m = ground_distance();
     if (ground_m <= first) return FAR;
     if (first <= 0.0 || first >= FAR) break;
@@ -71,71 +86,95 @@ float settle_walks(float t_m, out bool empty, out bool smooth_) {
   float end = FAR;
   empty = true;
   smooth_ = true;
-  for (int v = 0; v < NEPHO_VOLUMES; ++v) {
-    while (walks[v].leave_m <= t_m) next_leaf(v, walks[v]);
-    end = min(end, walks[v].leave_m);
-    if (walks[v].kind == NODE_BRICK) smooth_ = false;
-    if (walks[v].kind == NODE_BRICK || walks[v].kind == NODE_CONSTANT) empty = false;
-  }
+#define NEPHO_DO(v)                                         \
+  while (walks[v].leave_m <= t_m) next_leaf(v, walks[v]);   \
+  end = min(end, walks[v].leave_m);                         \
+  smooth_ = smooth_ && walks[v].kind != NODE_BRICK;         \
+  empty = empty && walks[v].kind != NODE_BRICK && walks[v].kind != NODE_CONSTANT;
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
   return end;
+}
+
+float leaf_cell_length(int volume, float t_m) {
+  float cell_m = FAR;
+  if (walks[volume].kind == NODE_BRICK || walks[volume].kind == NODE_CONSTANT) {
+#if defined(NEPHO_SHELL) && defined(NEPHO_BOX)
+    if (is_shell(volume))
+      cell_m = shell_cell_length(volume, walks[volume], t_m);
+    else
+      cell_m = box_cell_length(walks[volume]);
+#elif defined(NEPHO_SHELL)
+    cell_m = shell_cell_length(volume, walks[volume], t_m);
+#else
+    cell_m = box_cell_length(walks[volume]);
+#endif
+  }
+  return cell_m;
 }
 
 // One cell of the finest leaf around t_m, along the ray.
 float cell_length(float t_m) {
   float least = FAR;
-  for (int v = 0; v < NEPHO_VOLUMES; ++v)
-    if (walks[v].kind == NODE_BRICK || walks[v].kind == NODE_CONSTANT) {
-#ifdef NEPHO_SHELL
-      if (is_shell(v)) {
-        least = min(least, shell_cell_length(v, walks[v], t_m));
-        continue;
-      }
-#endif
-#ifdef NEPHO_BOX
-      least = min(least, box_cell_length(walks[v]));
-#endif
-    }
+#define NEPHO_DO(v) least = min(least, leaf_cell_length(v, t_m));
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
   return least;
+}
+
+#ifdef NEPHO_CELL_EXACT
+// Where the leaf's cell around `ahead` is left.
+float leaf_cell_end(int volume, float ahead) {
+  float wall = FAR;
+  if (walks[volume].kind == NODE_BRICK) {
+    ivec3 size = (walks[volume].high - walks[volume].low) >> 3;
+    ivec3 cell = clamp(ivec3(floor(leaf_cells_at(volume, walks[volume], ahead))), ivec3(0), ivec3(7));
+    ivec3 low = walks[volume].low + cell * size;
+    int axis;
+    bool up;
+    next_wall(volume, walks[volume], low, low + size, ahead, wall, axis, up);
+  }
+  return wall;
+}
+
+int leaf_sub_steps(int volume, float step_m) {
+#ifdef NEPHO_SHELL
+  if (is_shell(volume) && walks[volume].kind == NODE_BRICK)
+    return simpson_steps(step_m * walks[volume].stretch, walks[volume].radius.z,
+                         float(volumes[volume].cell_height_m) / walks[volume].per_cell.z);
+#endif
+  return 1;
 }
 
 // Where the first of the cells around t_m is left, and the Simpson sub-steps that its curvature
 // asks for: the reference setting.
 float cell_end(float t_m, float end_m, out int sub_steps) {
-  float least = end_m;
+  // A hair beyond t_m: on a wall the cell behind would end at once.
+  float hair = 1e-3 * cell_length(t_m), least = end_m;
+#define NEPHO_DO(v) least = min(least, leaf_cell_end(v, t_m + hair));
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
+  least = min(max(least, t_m + hair), end_m);
   sub_steps = 1;
-  for (int v = 0; v < NEPHO_VOLUMES; ++v) {
-    if (walks[v].kind != NODE_BRICK) continue;
-    ivec3 size = (walks[v].high - walks[v].low) >> 3;
-    // The cell ahead, a hair beyond t_m: on a wall the cell behind would end at once.
-    float ahead = t_m + 1e-3 * cell_length(t_m);
-    ivec3 cell = clamp(ivec3(floor(leaf_cells_at(v, walks[v], ahead))), ivec3(0), ivec3(7));
-    ivec3 low = walks[v].low + cell * size;
-    float wall;
-    int axis;
-    bool up;
-    next_wall(v, walks[v], low, low + size, ahead, wall, axis, up);
-    least = min(least, wall);
-  }
-  least = min(max(least, t_m + 1e-3 * cell_length(t_m)), end_m);
-#ifdef NEPHO_SHELL
-  for (int v = 0; v < NEPHO_VOLUMES; ++v)
-    if (is_shell(v) && walks[v].kind == NODE_BRICK) {
-      float height = float(volumes[v].cell_height_m) / walks[v].per_cell.z;
-      sub_steps = max(sub_steps, simpson_steps((least - t_m) * walks[v].stretch, walks[v].radius.z, height));
-    }
-#endif
+#define NEPHO_DO(v) sub_steps = max(sub_steps, leaf_sub_steps(v, least - t_m));
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
   return least;
 }
+#endif
 
 // Optical depth from the start to where the ray leaves all charts; `blocked` where the ground is hit.
 const float OPAQUE = 65504.0;  // the largest half float
 float optical_depth_ahead() {
   float end_m, t = begin_walks(end_m), tau = 0.0;
   if (t >= FAR) return end_m < FAR ? OPAQUE : 0.0;
-  for (int guard = 0; guard < 1000000 && t < end_m; ++guard) {
+  float leave = 0.0;
+  int ended = t < end_m ? 0 : 1;
+  while (leave < FAR && t < end_m && tau <= 1e4) {
     bool empty, smooth_;
-    float end = min(settle_walks(t, empty, smooth_), end_m);
-    if (end >= FAR) break;
+    leave = settle_walks(t, empty, smooth_);
+    float end = min(leave, end_m);
+    if (leave >= FAR) empty = true;
     if (!empty) {
       float k0 = total_extinction_at(t);
       if (smooth_) {
@@ -161,9 +200,10 @@ float optical_depth_ahead() {
           t = next;
         }
       }
-      if (tau > 1e4) break;
     }
     t = end;
+    if (leave >= FAR || t >= end_m || tau > 1e4) ended = 1;
   }
+  count_overrun(ended);
   return end_m < FAR ? OPAQUE : min(tau, OPAQUE);
 }

@@ -24,8 +24,7 @@ void add_step(inout Seen seen, vec3 s0, vec3 s1, float tau) {
 // Halves a step until its optical depth is under `most`: the source is linear in optical depth within
 // a step, and where a voxel is thick it falls off exponentially. T bounds how many steps there are.
 void limit_step(float t, inout float step_m, float k0, inout float k_mid, inout float k1, float most) {
-  for (int halving = 0; halving < 40; ++halving) {
-    if (simpson_optical_depth(k0, k_mid, k1, step_m) <= most) return;
+  while (simpson_optical_depth(k0, k_mid, k1, step_m) > most) {
     step_m *= 0.5;
     k1 = k_mid;
     k_mid = total_extinction_at(t + 0.5 * step_m);
@@ -43,7 +42,7 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_, inout vec3
   const float thickest = 1.0;
   float h = frame.step_voxels * voxel;
 #endif
-  for (int guard = 0; guard < 65536 && t < end; ++guard) {
+  while (t < end) {
 #ifdef NEPHO_CELL_EXACT
     int sub_steps = 1;
     float next = smooth_ ? min(t + voxel, end) : cell_end(t, end, sub_steps);
@@ -82,11 +81,13 @@ Seen see() {
   float end_m, t = begin_walks(end_m);
   bool lit = false;
   vec3 s0 = vec3(0.0);
-  for (int guard = 0; guard < 1000000 && t < end_m; ++guard) {
+  float end = 0.0;
+  int ended = t < end_m ? 0 : 1;
+  while (end < FAR && t < end_m && seen.transmittance >= frame.least_transmittance) {
     bool empty, smooth_;
-    float end = min(settle_walks(t, empty, smooth_), end_m);
-    if (end >= FAR) break;
-    if (empty) {
+    end = settle_walks(t, empty, smooth_);
+    float stop = min(end, end_m);
+    if (empty || end >= FAR) {
       lit = false;
     } else {
       if (!lit) {
@@ -94,11 +95,12 @@ Seen see() {
         lit = true;
       }
       s0 = total_source_at(t);
-      march_segment(seen, t, end, smooth_, s0);
-      if (seen.transmittance < frame.least_transmittance) break;
+      march_segment(seen, t, stop, smooth_, s0);
     }
-    t = end;
+    t = stop;
+    if (end >= FAR || t >= end_m || seen.transmittance < frame.least_transmittance) ended = 1;
   }
+  count_overrun(ended);
   float sine = float(dot(ray_direction, dvec3(frame.sky_axes[0], frame.sky_axes[1], frame.sky_axes[2])));
   for (int c = 0; c < 3; ++c)
     seen.radiance[c] += seen.transmittance * (end_m < FAR ? frame.below[c]

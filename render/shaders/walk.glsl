@@ -117,7 +117,7 @@ vec3 leaf_cells_at(int volume, Walk w, float t_m) {
 }
 
 // The next wall of the box [low, high) after t_m.
-void next_wall(int volume, inout Walk w, ivec3 low, ivec3 high, float t_m, out float wall_m,
+void next_wall(int volume, Walk w, ivec3 low, ivec3 high, float t_m, out float wall_m,
                out int axis, out bool up) {
 #ifdef NEPHO_SHELL
   if (is_shell(volume)) {

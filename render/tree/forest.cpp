@@ -131,7 +131,7 @@ class Refiner {
     const auto [voxel_pixels, length_m] = metric_.view(info, key);
     const double depth_error = summary.error_bound_per_m * length_m;
     if (voxel_pixels > refinement_.settings.pixels_per_voxel &&
-        depth_error > refinement_.settings.tolerance * kErrorShare)
+        depth_error > refinement_.settings.tolerance)
       queue_.insert({voxel_pixels * -std::expm1(-depth_error), volume, key, index});
   }
 
@@ -169,7 +169,9 @@ class Refiner {
     count(after, forest_.volumes[first.volume].nodes[first.node].kind, -1);
     for (std::size_t c = 0; c < keys.size(); ++c)
       count(after, leaf_from(keys[c], summaries[c]).kind, +1);
+#if !defined(NEPHO_MUTANT_FOREST_BUDGET)
     if (double(cost(after)) > budget_bytes_) return false;
+#endif
 
     queue_.erase(queue_.begin());
     std::vector<TreeNode>& nodes = forest_.volumes[first.volume].nodes;
@@ -185,9 +187,11 @@ class Refiner {
   static void read_bricks(VolumeTree& tree) {
     std::vector<std::uint32_t> order(tree.nodes.size());
     for (std::uint32_t n = 0; n < order.size(); ++n) order[n] = n;
+#if !defined(NEPHO_MUTANT_FOREST_ORDER)
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
       return tree.nodes[a].key < tree.nodes[b].key;
     });
+#endif
     for (const std::uint32_t n : order) {
       TreeNode& node = tree.nodes[n];
       if (node.kind != NodeKind::kBrick && node.kind != NodeKind::kConstant) continue;

@@ -31,7 +31,8 @@ class Picture : public testing::Test {
     return image;
   }
   const Metadata metadata_{{"nephoscope:scene", "{\"a\": 1.5, \"b\": \"x y\"}"},
-                           {"nephoscope:error", "error (estimated): integration 1 %"}};
+                           {"nephoscope:error", "error (estimated): integration 1 %"},
+                           {"nephoscope:assumptions", ""}};
   const PictureFiles files_{{NEPHO_MODULE_DIR}};
   fs::path folder_;
 };
@@ -115,6 +116,7 @@ TEST_F(Picture, png_exr_hdr_keep_pixels_and_metadata) {
     const FloatImage back = files_.read(path, found);
     ASSERT_EQ(back.width, linear.width) << name;
     for (const auto& [key, value] : metadata_) {
+      if (value.empty()) continue;  // some formats drop it
       EXPECT_EQ(found[key], value) << name;
       EXPECT_EQ(files_.read_metadata(path).at(key), value) << name;
     }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -264,7 +265,7 @@ TEST(Pyramid, VarianceIsWhatTheFilterLeavesOut) {
       });
     std::printf("measured: %-21s variance off by %.1e of the mean square\n", c.name.c_str(),
                 worst / top);
-    EXPECT_LE(worst, 1e-6 * top) << c.name;
+    EXPECT_LE(worst, 2e-6 * top) << c.name;
   }
 }
 
@@ -352,9 +353,9 @@ TEST_P(BlockTest, ClosedFormEqualsSampledBlock) {
         samples[at] = sample(column, k);
       });
     };
-    field.nodes = collect_nodes(kOpenBox, lattice, field.region);
+    const std::size_t sampled = collect_nodes(kOpenBox, lattice, field.region).back().size();
     const SparsePyramid pyramid(kOpenBox, lattice, field);
-    EXPECT_EQ(field.nodes.empty(), everywhere);
+    EXPECT_EQ(sampled == 0, everywhere);
     double worst = 0, broken = 0;
     for (int level = 0; level <= 3; ++level)
       for_each_node(kOpenBox, lattice, level, [&](NodeKey key) {
@@ -369,7 +370,7 @@ TEST_P(BlockTest, ClosedFormEqualsSampledBlock) {
         });
       });
     std::printf("measured: block %s: worst %.1e, %zu nodes sampled, %llu bytes\n",
-                everywhere ? "described" : "half sampled", worst, field.nodes.size(),
+                everywhere ? "described" : "half sampled", worst, sampled,
                 static_cast<unsigned long long>(pyramid.bytes()));
     EXPECT_LE(worst, 1e-15);
     EXPECT_EQ(broken, 0);
@@ -380,6 +381,105 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(std::array<Index3, 2>{Index3{10, 20, 30}, Index3{40, 41, 33}},
                     std::array<Index3, 2>{Index3{0, 0, 0}, Index3{31, 64, 7}},
                     std::array<Index3, 2>{Index3{63, 5, 5}, Index3{64, 5, 64}}));
+
+// Two blocks in nothing: nodes that see both are stored though all their children may be described.
+struct TwoBlocks {
+  std::array<std::array<Index3, 2>, 2> boxes;
+  Lattice lattice;
+  double value = 0.25;
+
+  double sample(Column column, std::uint32_t k) const {
+    const Index3 g = {column.i, column.j, k};
+    for (const auto& [low, high] : boxes) {
+      bool within = true;
+      for (std::size_t a = 0; a < 3; ++a) within = within && g[a] >= low[a] && g[a] <= high[a];
+      if (within) return value;
+    }
+    return 0;
+  }
+  SparsePyramid::Field field() const {
+    SparsePyramid::Field field;
+    field.region = [this](NodeKey key) {
+      const Index3 &own = lattice.cells(key.level()), &finest = lattice.cells(lattice.max_level());
+      SparsePyramid::Region region;
+      int seen = 0;
+      for (const auto& [low, high] : boxes) {
+        bool meets = true;
+        for (std::size_t a = 0; a < 3; ++a) {
+          const std::int64_t ratio = finest[a] / own[a], first = 8 * std::int64_t(key.ijk()[a]);
+          meets = meets && std::int64_t(high[a]) >= (first - 1) * ratio &&
+                  std::int64_t(low[a]) <= (first + 9) * ratio;
+        }
+        if (!meets) continue;
+        ++seen;
+        region.low = low, region.high = high, region.value = value;
+      }
+      region.constant = seen == 0;
+      region.block = seen == 1;
+      return region;
+    };
+    field.samples = [this](NodeKey key, double* samples) {
+      for_each_brick_sample(key, [&](std::size_t at, Column column, std::uint32_t k) {
+        samples[at] = sample(column, k);
+      });
+    };
+    return field;
+  }
+};
+
+TEST(Pyramid, TwoBlocksAreSampledOnlyWhereTheyMeet) {
+  for (const std::uint32_t gap : {1u, 3u, 12u, 20u}) {
+    const TwoBlocks blocks = {
+        {{{Index3{5, 5, 5}, Index3{31, 30, 29}}, {Index3{31 + gap, 7, 5}, Index3{60, 40, 61}}}},
+        Lattice({kSplitXyz, kSplitXyz, kSplitXyz})};
+    Pyramid dense;
+    for (int level = 0; level <= 3; ++level)
+      dense.levels.emplace_back(kOpenBox, blocks.lattice, level);
+    test::for_each_sample(kOpenBox, blocks.lattice.cells(3), [&](Column column, std::uint32_t k) {
+      dense.levels[3].at(column, k) = blocks.sample(column, k);
+    });
+    const SparsePyramid pyramid(kOpenBox, blocks.lattice, blocks.field());
+    double worst = 0;
+    std::size_t broken = 0;
+    for (int level = 3; level >= 0; --level)
+      for_each_node(kOpenBox, blocks.lattice, level, [&](NodeKey key) {
+        const DenseLevel& own = dense.levels[std::size_t(level)];
+        if (level < 3) {
+          const BrickSamples brick =
+              coarsen_node(kOpenBox, blocks.lattice, key, dense.levels[std::size_t(level) + 1]);
+          for_each_brick_sample(key, [&](std::size_t at, Column column, std::uint32_t k) {
+            dense.levels[std::size_t(level)].at(column, k) = brick[at];
+          });
+        }
+        BrickSamples samples;
+        pyramid.samples(key, samples.data());
+        const NodeSummary summary = pyramid.summary(key);
+        for_each_brick_sample(key, [&](std::size_t at, Column column, std::uint32_t k) {
+          worst = std::max(worst, std::abs(samples[at] - own(column, k)));
+          broken += own(column, k) > double(summary.max_extinction_per_m);
+        });
+      });
+    std::printf("measured: two blocks, gap %u: worst %.1e\n", gap, worst);
+    EXPECT_LE(worst, 1e-15) << gap;
+    EXPECT_EQ(broken, 0u) << gap;
+  }
+}
+
+// One 4096^3 tile among 16384^3 samples, and another one far away.
+TEST(Pyramid, LargeTilesCostNoTimeOrMemory) {
+  const TwoBlocks blocks = {{{{Index3{4096, 4096, 4096}, Index3{8191, 8191, 8191}},
+                              {Index3{16000, 1, 16000}, Index3{16007, 8, 16007}}}},
+                            Lattice(std::vector<SplitMask>(11, kSplitXyz))};
+  const auto start = std::chrono::steady_clock::now();
+  const SparsePyramid pyramid(kOpenBox, blocks.lattice, blocks.field());
+  const NodeSummary root = pyramid.summary(NodeKey(0, 0, 0, 0, 0));
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  std::printf("measured: 4096^3 tile and another: %.3f s, %llu bytes\n", taken.count(),
+              static_cast<unsigned long long>(pyramid.bytes()));
+  EXPECT_FLOAT_EQ(root.max_extinction_per_m, 0.25f);
+  EXPECT_LE(pyramid.bytes(), 200'000u);
+  EXPECT_LE(taken.count(), 1);
+}
 
 }  // namespace
 }  // namespace nepho::test

@@ -58,6 +58,7 @@ std::vector<ConformanceScene> analytic_scenes() {
       analytic("half_space", {kind("half_space"), {"max_level", 1}}),
       analytic("sphere", {kind("sphere"), {"max_level", 3}, {"radius_m", 400}}),
       analytic("gaussian", {kind("gaussian"), {"max_level", 3}}),
+      analytic("gaussian_fine", {kind("gaussian"), {"max_level", 4}}),
       analytic("gaussian_leaning",
                {kind("gaussian"), {"max_level", 3}, {"shear_xz", 0.7}, {"shear_yz", -0.3}}, town),
       analytic("exponential", {kind("exponential"), {"max_level", 4}}),

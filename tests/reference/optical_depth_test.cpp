@@ -73,7 +73,7 @@ Forest forest_of(const BrickSource& source, double tolerance, int max_level = 31
 }
 
 TEST(OpticalDepth, EqualsBruteForceAlongRandomRays) {
-  const Forest forest = forest_of(cloud_source(), 25);
+  const Forest forest = forest_of(cloud_source(), 1.5);
   const CutLevels cut(forest);
   const RenderVolume volume = test::volume_of(cloud_source());
   const FinestLevels finest({&volume, 1}, 8);

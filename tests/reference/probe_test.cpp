@@ -85,7 +85,7 @@ Case make_case(test::Random& random, bool sky) {
   c.request.settings.probe_pixels = 64;
   c.request.settings.seed = std::uint64_t(random.integer(1, 1000));
   Refinement refinement{c.request.camera, c.request.settings, {}};
-  refinement.settings.tolerance = random.log_uniform(150, 1000);
+  refinement.settings.tolerance = random.log_uniform(10, 60);
   refinement.settings.pixels_per_voxel = 0.1;
   c.forest = build_forest(c.request.volumes, refinement);
   c.cut = march_picture(CutLevels(c.forest), c.request);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "accuracy_report.h"
+#include "analytic_field.h"
 #include "march_support.h"
 #include "random.h"
 
@@ -131,6 +132,48 @@ TEST(ShellMarch, PiecesFollowTheirCellsAcrossFacesOfTheEllipsoid) {
   std::printf("worst excursion %.1e cells, most pieces %zu\n", worst_cells, most);
   EXPECT_LT(worst_cells, 1e-6);
   EXPECT_LE(most, 4 * 3 * 32u);
+}
+
+// lattice.md 5: within 2e-4 of (mean of the cell's corners) * length. In wide, low cells of a field
+// that varies by a factor of 3 from sample to sample.
+TEST(ShellMarch, SubStepsKeepOpticalDepthWithinTheirBound) {
+  const auto chart = std::make_shared<ShellChart>(Ellipsoid::sphere(kRadius_m), 0.0, 16000.0);
+  const FieldSource source(chart, Lattice({kSplitXyz}), [](glm::dvec3 p) {
+    return 1e-4 * (0.5 + test::value_noise(p / 911.0));
+  });
+  const FixedLevel levels({&source}, 1);
+  test::Random random;
+  double worst = 0;
+  int most_steps = 0;
+  for (int i = 0; i < 300; ++i) {
+    const glm::dvec3 up = random.direction(),
+                     d = glm::normalize(glm::cross(up, random.direction()));
+    const glm::dvec3 lowest = (kRadius_m + random.uniform(10, 15900)) * up;
+    VolumeWalk walk(levels, 0, {lowest - 1e6 * d, d}, kNoDistance_m, false);
+    while (walk.next()) {
+      const double length_m = walk.t1_m() - walk.t0_m();
+      if (length_m < 1) continue;
+      const auto simpson = [&](int steps) {
+        double sum = 0;
+        for (int s = 0; s < steps; ++s) {
+          const double h = length_m / steps, t = walk.t0_m() + s * h;
+          sum += h / 6 *
+                 (walk.extinction_per_m(t) + 4 * walk.extinction_per_m(t + h / 2) +
+                  walk.extinction_per_m(t + h));
+        }
+        return sum;
+      };
+      const int steps = walk.sub_steps(length_m);
+      most_steps = std::max(most_steps, steps);
+      // Corners are 0.5e-4 .. 1.5e-4: their mean is 1e-4, give or take what the bound has to spare.
+      worst = std::max(worst, std::abs(simpson(steps) - simpson(64)) / (1e-4 * length_m));
+    }
+  }
+  std::printf("up to %d sub-steps\n", most_steps);
+  test::report_accuracy("reference march", "sub-steps of curved cells", worst, 2e-4,
+                        "of mean extinction * length");
+  EXPECT_LT(worst, 2e-4);
+  EXPECT_GE(most_steps, 4);
 }
 
 TEST(ShellMarch, TheGroundStopsTheSunAndTheEye) {

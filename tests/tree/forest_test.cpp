@@ -210,7 +210,7 @@ TEST(Forest, SplitsByPixelsByErrorAndNotBeyondMaxLevel) {
   r.settings.pixels_per_voxel = 20;
   EXPECT_EQ(finest(r), 1);
   r = refinement(64);
-  r.settings.tolerance = 16 * 300;  // more than any optical depth of the scene
+  r.settings.tolerance = 300;  // more than any optical depth of the scene
   EXPECT_EQ(finest(r), 0);
 }
 

@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/scene_input.h"
+#include "common/framing.h"
 #include "common/open_scene.h"
 #include "core/error.h"
 #include "scene/scene_file.h"
@@ -50,13 +51,7 @@ std::string split_name(SplitMask mask) {
 std::pair<float, float> extinction_range(const BrickSource& source, double time_s) {
   float low = 0, high = 0;
   for (int root = 0; root < source.info().chart->roots(); ++root) {
-    NodeSummary summary;
-    const Status status = source.summary({root, 0, 0u, 0u, 0u}, time_s, summary);
-    if (status != Status::kOk) {
-      char text[512] = "";
-      source.last_error(text, sizeof text);
-      throw Error({to_string(status), source.info().name, "", text, ""});
-    }
+    const NodeSummary summary = summary_of(source, {root, 0, 0u, 0u, 0u}, time_s);
     low = root ? std::min(low, summary.min_extinction_per_m) : summary.min_extinction_per_m;
     high = std::max(high, summary.max_extinction_per_m);
   }
@@ -66,7 +61,8 @@ std::pair<float, float> extinction_range(const BrickSource& source, double time_
 Json describe(const BrickSource& source, const VolumeSpec& volume) {
   const VolumeInfo& info = source.info();
   const Index3& cells = info.lattice.cells(info.lattice.max_level());
-  const auto [low, high] = extinction_range(source, time_of(volume, info));
+  const double time_s = volume.time_s ? time_of(volume, info) : first_time_with_cloud(source);
+  const auto [low, high] = extinction_range(source, time_s);
   Json out{{"name", info.name},
            {"chart", info.chart->kind() == ChartKind::kBox ? "box" : "shell"},
            {"roots", info.chart->roots()},
@@ -75,7 +71,7 @@ Json describe(const BrickSource& source, const VolumeSpec& volume) {
            {"finest_cell_m", triple(finest_cell_m(info))},
            {"samples", info.finest == SampleKind::kPoint ? "point" : "hat"},
            {"bounds_q", {triple(info.bounds.low), triple(info.bounds.high)}},
-           {"extinction_per_m", {{"min", low}, {"max", high}}},
+           {"extinction_per_m", {{"time_s", time_s}, {"min", low}, {"max", high}}},
            {"co_albedo", triple(info.co_albedo)},
            {"time_origin", utc(info.time_origin_ns)},
            {"times_s", info.times_s},
@@ -107,8 +103,9 @@ void print_volume(const Json& v) {
               v["chart"].get<std::string>().c_str(), v["roots"].get<int>(), v["levels"].get<int>(),
               cells[0].get<unsigned>(), cells[1].get<unsigned>(), cells[2].get<unsigned>(),
               size[0].get<double>(), size[1].get<double>(), size[2].get<double>());
-  std::printf("  extinction %.6g to %.6g 1/m\n", v["extinction_per_m"]["min"].get<double>(),
-              v["extinction_per_m"]["max"].get<double>());
+  std::printf(
+      "  extinction %.6g to %.6g 1/m (at %.6g s)\n", v["extinction_per_m"]["min"].get<double>(),
+      v["extinction_per_m"]["max"].get<double>(), v["extinction_per_m"]["time_s"].get<double>());
   for (const Json& channel : v["channels"])
     std::printf("  channel %s [%s], %d bit, error to %.3g\n",
                 channel["name"].get<std::string>().c_str(),

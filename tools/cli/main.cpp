@@ -109,6 +109,13 @@ int run(int argc, char** argv) {
   add_data_options(*tell, info.grid, info.up, info.metres_per_unit, info.density_scale, info.frame);
   tell->callback([&] { info_command(info); });
 
+  CompareOptions compare;
+  CLI::App* differ =
+      app.add_subcommand("compare", "how far picture A is from picture B, the truth");
+  differ->add_option("A", compare.a, "picture")->required();
+  differ->add_option("B", compare.b, "the truth")->required();
+  differ->callback([&] { compare_command(compare); });
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

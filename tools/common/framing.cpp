@@ -14,20 +14,9 @@ constexpr std::size_t kEnoughNodes = 10000;  // about 1/20 of the cloud's extent
 constexpr double kDefaultFov_rad = 0.6;      // 34 degrees: a portrait lens
 constexpr double kMargin = 1.08;             // air around the cloud
 constexpr double kViewAzimuth_rad = 0.6;     // looking north-north-east, the cloud's corner ahead
-constexpr double kLookUp_rad = 0.07;         // from slightly below
+constexpr double kLookUp_rad = 0.14;         // from below: the horizon stays low
 constexpr double kLookDown_rad = 0.35;       // on a layer
 constexpr double kFlat = 0.15;               // a layer: height over width
-
-NodeSummary summary_of(const BrickSource& source, NodeKey key, double time_s) {
-  NodeSummary summary;
-  const Status status = source.summary(key, time_s, summary);
-  if (status != Status::kOk) {
-    char text[512] = "";
-    source.last_error(text, sizeof text);
-    throw Error({to_string(status), "volume '" + source.info().name + "'", "", text, ""});
-  }
-  return summary;
-}
 
 void add_corners(const VolumeInfo& info, NodeKey key, std::vector<glm::dvec3>& points) {
   for (std::uint32_t corner = 0; corner < 8; ++corner) {
@@ -105,6 +94,17 @@ glm::dvec3 not_parallel(const glm::dvec3& up, const glm::dvec3& otherwise,
 
 }  // namespace
 
+NodeSummary summary_of(const BrickSource& source, NodeKey key, double time_s) {
+  NodeSummary summary;
+  const Status status = source.summary(key, time_s, summary);
+  if (status != Status::kOk) {
+    char text[512] = "";
+    source.last_error(text, sizeof text);
+    throw Error({to_string(status), "volume '" + source.info().name + "'", "", text, ""});
+  }
+  return summary;
+}
+
 std::vector<glm::dvec3> occupied_points(const BrickSource& source, double time_s) {
   const VolumeInfo& info = source.info();
   std::vector<NodeKey> nodes;
@@ -166,7 +166,7 @@ Camera frame_camera(std::span<const glm::dvec3> points, const LocalAxes& axes,
 }
 
 glm::dvec3 sun_over_left_shoulder(const Camera& camera, const glm::dvec3& up) {
-  constexpr double elevation_rad = glm::radians(40.0), aside_rad = glm::radians(45.0);
+  constexpr double elevation_rad = glm::radians(40.0), aside_rad = glm::radians(55.0);
   glm::dvec3 view = glm::normalize(camera.target_m - camera.eye_m);
   // Looking straight down or up, the picture's upper edge says where "ahead" is.
   if (glm::length(glm::cross(view, up)) < 1e-6) view = camera.up;

@@ -16,6 +16,9 @@ struct LocalAxes {
   glm::dvec3 east{1, 0, 0}, north{0, 1, 0}, up{0, 0, 1};
 };
 
+// The verb with its failure as an Error that has the source's own text.
+NodeSummary summary_of(const BrickSource& source, NodeKey key, double time_s);
+
 // Corners (ECEF, m) of the nodes that hold extinction, from summaries alone: no brick is read. Goes
 // down until there are some ten thousand nodes. Throws Error with the source's own text.
 std::vector<glm::dvec3> occupied_points(const BrickSource& source, double time_s);
@@ -25,7 +28,7 @@ std::vector<glm::dvec3> occupied_points(const BrickSource& source, double time_s
 Camera frame_camera(std::span<const glm::dvec3> points, const LocalAxes& axes,
                     const CameraSpec& wish, double aspect);
 
-// 40 degrees high, 45 degrees to the left of straight behind the camera.
+// 40 degrees high, 55 degrees to the left of straight behind the camera.
 glm::dvec3 sun_over_left_shoulder(const Camera& camera, const glm::dvec3& up);
 
 }  // namespace nepho

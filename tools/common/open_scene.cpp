@@ -14,9 +14,15 @@ namespace {
 // 550, 450 nm behind the air, and the blue that the air made of the rest. Rounded: a background to
 // look at, until the atmosphere is computed.
 constexpr glm::dvec3 kSunIrradiance_W_per_m2_nm{1.42, 1.50, 1.45};
-constexpr glm::dvec3 kZenith_W_per_m2_sr_nm{0.028, 0.058, 0.125};
-constexpr glm::dvec3 kHorizon_W_per_m2_sr_nm{0.125, 0.165, 0.215};
-constexpr glm::dvec3 kBelow_W_per_m2_sr_nm{0.050, 0.055, 0.060};
+constexpr glm::dvec3 kZenith_W_per_m2_sr_nm{0.018, 0.040, 0.092};
+constexpr glm::dvec3 kHorizon_W_per_m2_sr_nm{0.078, 0.108, 0.150};
+constexpr glm::dvec3 kBelow_W_per_m2_sr_nm{0.032, 0.038, 0.044};
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
 
 std::string listed(const std::vector<double>& times_s) {
   std::string text;
@@ -69,12 +75,6 @@ Camera find_camera(const OpenedScene& opened, const Placement& frame) {
                       double(settings.width) / settings.height);
 }
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
-
 void find_light(OpenedScene& opened, const Placement& frame, const Camera& camera) {
   Scene& scene = opened.scene;
   const glm::dvec3 about = glm::length(camera.target_m) > 1e5 ? camera.target_m : camera.eye_m;
@@ -124,13 +124,26 @@ double time_of(const VolumeSpec& volume, const VolumeInfo& info) {
   return *found;
 }
 
+double first_time_with_cloud(const BrickSource& source) {
+  const VolumeInfo& info = source.info();
+  for (const double time_s : info.times_s)
+    for (int root = 0; root < info.chart->roots(); ++root)
+      if (summary_of(source, {root, 0, 0u, 0u, 0u}, time_s).max_extinction_per_m > 0) return time_s;
+  return time_of({}, info);
+}
+
 OpenedScene open_scene(const SourceHost& host, Scene scene) {
   OpenedScene opened;
   opened.scene = std::move(scene);
   for (const VolumeSpec& volume : opened.scene.volumes) {
     opened.sources.push_back(open_volume(host, volume));
     const VolumeInfo& info = opened.sources.back()->info();
-    opened.request.volumes.push_back({opened.sources.back().get(), time_of(volume, info),
+    const double time_s =
+        volume.time_s ? time_of(volume, info) : first_time_with_cloud(*opened.sources.back());
+    if (time_s != info.times_s.front() && !volume.time_s)
+      opened.assumptions.push_back(info.name + ": the first time that is not empty, " +
+                                   number_text(time_s) + " s");
+    opened.request.volumes.push_back({opened.sources.back().get(), time_s,
                                       volume.phase.value_or(info.phase),
                                       volume.co_albedo.value_or(info.co_albedo)});
     for (const std::string& text : info.assumptions)

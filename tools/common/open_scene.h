@@ -21,6 +21,9 @@ struct OpenedScene {
 std::unique_ptr<BrickSource> open_volume(const SourceHost& host, const VolumeSpec& volume);
 // The volume's time; throws Error that lists the times where it has no such one.
 double time_of(const VolumeSpec& volume, const VolumeInfo& info);
+// Of a sequence that begins with an empty frame, a picture of its first cloud. The first time where
+// all are empty.
+double first_time_with_cloud(const BrickSource& source);
 // Throws Error: a source's own reasons (with the scene file's line), or nothing to look at.
 OpenedScene open_scene(const SourceHost& host, Scene scene);
 

@@ -162,8 +162,10 @@ Metadata read_trailer(const std::filesystem::path& path) {
   const std::size_t mark = tail.rfind(kTrailerMark);
   if (mark == std::string::npos) return metadata;
   std::istringstream lines(tail.substr(mark + std::strlen(kTrailerMark)));
-  for (std::string key, value; lines >> key >> std::ws && std::getline(lines, value);)
-    metadata[key] = value;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t blank = std::min(line.find(' '), line.size());
+    if (blank > 0) metadata[line.substr(0, blank)] = line.substr(std::min(blank + 1, line.size()));
+  }
   return metadata;
 }
 

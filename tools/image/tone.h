@@ -15,7 +15,7 @@ ByteImage to_display(const FloatImage& radiance, double exposure_ev, ToneMap ton
 // The exposure that puts the bright end (95th percentile) of the cloud's luminance at
 // kBrightCloud; pixels count where the view optical depth is above 0.1. Without a cloud, the whole
 // picture counts; a black picture gets 0.
-inline constexpr double kBrightCloud = 0.8;
+inline constexpr double kBrightCloud = 1.0;
 double exposure_from(const FloatImage& radiance, std::span<const float> optical_depth);
 
 }  // namespace nepho

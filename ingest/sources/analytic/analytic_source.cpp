@@ -61,7 +61,7 @@ class AnalyticSource final : public BrickSource {
     SparsePyramid::Field field;
     field.region = [this](NodeKey key) { return region(key); };
     field.samples = [this](NodeKey key, double* samples) { sample(key, samples); };
-    field.nodes = collect_nodes(*info_.chart, info_.lattice, field.region, kMostNodes);
+    field.most_nodes = kMostNodes;
     return {*info_.chart, info_.lattice, std::move(field)};
   }
 

@@ -1,0 +1,142 @@
+#!/bin/sh
+# program_test.sh CLAIM BIN_DIR WORK_DIR: one claim about the program, checked from outside. The
+# scenes are small: 32x18 pixels of an analytic sphere.
+set -eu
+claim=$1 work=$3
+PATH=$2:$PATH
+rm -rf "$work" && mkdir -p "$work/in" && cd "$work"
+
+fail() { echo "FAIL: $1"; exit 1; }
+has() { grep -Eq -- "$2" "$1" || { cat "$1"; fail "$1 does not match: $2"; }; }
+sphere() {  # sphere FILE [MEMBERS]
+  cat >"$1" <<END
+{"volumes": [{"source": "analytic", "name": "ball",
+  "parameters": {"kind": "sphere", "radius": "0.5 km", "extinction_per_m": 0.01, "max_level": 2}}],
+ "image": {"width": 32, "height": 18}${2:+, $2}}
+END
+}
+formats() {  # those that this build writes, and that keep what they are given
+  echo ppm pfm
+  nephoscope render in/s.json -o probe.png >/dev/null 2>&1 && echo png exr hdr
+}
+
+version_and_help() {
+  nephoscope --version >v.txt && has v.txt '^nephoscope [0-9]+\.[0-9]+\.[0-9]+$'
+  nephoscope --help >h.txt && has h.txt 'Examples:' && has h.txt 'nephoscope render'
+  nephoscope render --help >r.txt
+  for option in size look-from look-at fov sun budget-mib step tolerance fetch seed frame fps \
+    density-scale up metres-per-unit grid light exposure explain; do
+    has r.txt "^ *(-o,)?--$option"
+  done
+}
+
+render_repeats_from_its_metadata() {
+  sphere in/s.json '"camera": {"fov_deg": 33.3}, "sun": {"azimuth_deg": 77.7, "elevation_deg": 21}'
+  for ending in $(formats); do
+    nephoscope render in/s.json --probe-pixels 4 -o "in/one.$ending" >one.txt
+    # From another folder, and after the scene file is gone: all that it needs is in the picture.
+    mv in/s.json in/hidden
+    mkdir -p other && (cd other && nephoscope render "../in/one.$ending" -o "two.$ending") >two.txt
+    mv in/hidden in/s.json
+    nephoscope compare "in/one.$ending" "other/two.$ending" >same.txt
+    has same.txt 'bit for bit'
+    [ "$(grep '^error' one.txt)" = "$(grep '^error' two.txt)" ] || fail "another error line"
+    nephoscope info "other/two.$ending" >info.txt
+    has info.txt '^nephoscope:error: error \(estimated\): integration'
+    has info.txt '^nephoscope:version: [0-9]'
+  done
+  # A changed option is another picture: the comparison above can fail.
+  nephoscope render in/one.ppm --sun 200,40 -o three.ppm >/dev/null
+  nephoscope compare in/one.ppm three.ppm >differ.txt && has differ.txt 'not the same pixels'
+}
+
+frames_and_exposes_by_itself() {
+  sphere in/s.json
+  nephoscope render in/s.json -o a.ppm >a.txt
+  has a.txt '^error \(estimated\): integration [0-9.e+-]+ %, level of detail [0-9.e+-]+ %, quantisation [0-9.e+-]+ %, light model [0-9.e+-]+ % \(table, slabs\)$'
+  has a.txt 'exposure [+-][0-9.]+ EV \(from the picture\)'
+  has a.txt '^assumed: camera: frames the cloud'
+  has a.txt "^assumed: sun: 40 degrees high, behind the camera's left shoulder"
+  # The sphere fills the picture's height and no more: the middle row is cloud, and sky at its ends.
+  nephoscope render in/s.json --tone-map none -o b.pfm >/dev/null
+  nephoscope info b.pfm >b.txt && has b.txt '"exposure_ev"'
+  # What was stated is what was used: giving it again changes no bit.
+  ev=$(sed -n 's/.*exposure \([+-][0-9.]*\) EV.*/\1/p' a.txt)
+  nephoscope render in/s.json --exposure "$ev" -o c.ppm >c.txt
+  nephoscope compare a.ppm c.ppm >same.txt && has same.txt 'bit for bit'
+  if grep -q 'from the picture' c.txt; then fail "a given exposure is not found again"; fi
+}
+
+explain_lists_what_was_used() {
+  sphere in/s.json
+  nephoscope render in/s.json --explain -o a.ppm >a.txt
+  has a.txt '^device: .*OpenGL'
+  has a.txt '^  analytic$'
+  has a.txt '^  ball: [0-9]+ nodes, [0-9]+ bricks'
+  has a.txt '^bytes: budget 256 MiB, used [0-9.]+ MiB'
+  has a.txt '^passes \(CPU\):'
+  has a.txt '^shader switches:'
+  has a.txt '^left out:'
+  if grep -qi 'openvdb\|nepho_image_oiio' a.txt; then fail "loaded what the scene does not need"; fi
+}
+
+info_for_people_and_programs() {
+  sphere in/s.json
+  nephoscope info in/s.json >a.txt && has a.txt '^  extinction 0 to 0\.01'
+  nephoscope info in/s.json --json >a.json
+  has a.json '"max": 0\.01' && has a.json '"chart": "box"'
+}
+
+several_inputs_are_one_scene() {
+  sphere in/s.json
+  cat >in/two.json <<END
+{"volumes": [
+  {"source": "analytic", "name": "left", "parameters": {"kind": "sphere", "radius_m": 300, "max_level": 2}},
+  {"source": "analytic", "name": "right", "parameters": {"kind": "cube", "center_x_m": 900, "max_level": 2}}],
+ "image": {"width": 32, "height": 18}}
+END
+  nephoscope render in/two.json --explain --probe-pixels 0 -o a.ppm >a.txt
+  has a.txt '^  left: [0-9]+ nodes' && has a.txt '^  right: [0-9]+ nodes'
+}
+
+options_beat_the_scene() {
+  sphere in/s.json '"render": {"tolerance": 0.05, "seed": 3}, "exposure_ev": 1'
+  nephoscope render in/s.json --size 20x10 --step 0 --light single --seed 9 --exposure -2.5 \
+    --look-from 0,-3000,500 --look-at 0,0,500 --fov 25 --sun 180,10 --max-level 1 --budget-mib 64 \
+    --fetch texels8 --probe-pixels 0 -o a.pfm >a.txt
+  has a.txt '^a.pfm: 20x10, exposure -2.50 EV$'
+  nephoscope info a.pfm >i.txt
+  for pattern in '"step_voxels": 0' '"light": "single"' '"seed": 9' '"fetch": "texels8"' \
+    '"max_level": 1' '"budget_mib": 64' '"width": 20' '-3000'; do
+    has i.txt "$pattern"
+  done
+  if grep -q tolerance i.txt; then fail "a fixed step leaves no tolerance"; fi
+}
+
+ctrl_c_leaves_nothing() {
+  sphere in/s.json
+  # Fine and slow enough to be caught at work; the temporary is there before the work begins.
+  nephoscope render in/s.json --size 2000x2000 --step 0 -o in/a.ppm >/dev/null 2>&1 &
+  pid=$!
+  for wait in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+    [ -n "$(find in -name '.a.*')" ] && break
+    sleep 0.1
+  done
+  [ -n "$(find in -name '.a.*')" ] || fail "was not at work after 2 s"
+  kill -TERM $pid
+  if wait $pid; then fail "ended well in spite of the signal"; fi
+  [ "$(ls -A in)" = s.json ] || { ls -A in; fail "left something behind"; }
+}
+
+compare_measures() {
+  sphere in/s.json
+  nephoscope render in/s.json --probe-pixels 0 --exposure 0 -o a.pfm >/dev/null
+  nephoscope render in/s.json --probe-pixels 0 --exposure 0 --step 0 -o b.pfm >/dev/null
+  nephoscope compare a.pfm b.pfm >c.txt
+  has c.txt '^rms of luminance, relative: [0-9.e-]+ % \(over all pixels\)$'
+  has c.txt '^relative MSE: [0-9.e-]+$'
+  rms=$(sed -n 's/^rms.*: \([0-9.e-]*\) %.*/\1/p' c.txt)
+  awk -v rms="$rms" 'BEGIN { exit !(rms > 0 && rms < 3) }' || { cat c.txt; fail "rms of $rms %"; }
+}
+
+"$claim"
