@@ -86,8 +86,8 @@ TEST(Malformed, DamagedHeadersNeverCrash) {
   const std::string file = (folder() / "damaged.vdb").string();
   int refused = 0, read = 0;
   // The file's and the grid's headers, the transform and the tree's top: about 900 bytes.
-  for (std::size_t at = 0; at < 1000; ++at)
-    for (const char byte : {'\x00', '\x7f', '\xff'}) {
+  for (std::size_t at = 0; at < 1300; at += at < 200 ? 1 : 3)
+    if (const char byte = at % 2 ? '\x7f' : '\xff'; intact[at] != byte) {
       std::string damaged = intact;
       damaged[at] = byte;
       std::ofstream(file, std::ios::binary) << damaged;

@@ -20,11 +20,11 @@ struct Turret {
   double x, z, neck_radius, head_radius, height;
 };
 constexpr Turret kTurrets[] = {
-    {-190, -60, 330, 440, 1640}, {330, 60, 330, 400, 1230},   {-610, 240, 300, 330, 880},
-    {60, -520, 300, 330, 960},   {-560, -430, 290, 280, 620}, {760, -200, 290, 300, 700},
-    {-980, -60, 240, 230, 430},  {660, 480, 300, 280, 560},   {-130, 640, 320, 330, 780},
-    {1090, 190, 200, 190, 310},  {390, -820, 230, 220, 380},  {-430, 850, 220, 210, 350},
-    {40, 120, 460, 300, 560},    {-380, -40, 420, 260, 480},  {420, -150, 400, 260, 460},
+    {-260, -40, 300, 430, 1660}, {430, 120, 290, 370, 1270},  {-800, 260, 250, 290, 860},
+    {110, -640, 270, 320, 900},  {-700, -480, 260, 250, 560}, {930, -230, 240, 260, 640},
+    {-1150, -60, 210, 190, 370}, {760, 560, 250, 240, 500},   {-130, 760, 280, 300, 740},
+    {1210, 170, 180, 170, 290},  {480, -860, 220, 200, 350},  {-470, 950, 210, 190, 330},
+    {40, 120, 460, 300, 520},    {-480, -60, 420, 260, 450},  {520, -190, 400, 240, 420},
 };
 
 double smooth_min(double a, double b, double blend) {
@@ -39,7 +39,7 @@ Cumulus::Cumulus(const CumulusShape& shape) : shape_(shape), top_m_(0) {
   Dice dice(shape.seed);
   for (const Turret& turret : kTurrets) {
     // A stack of bubbles, wide at the foot, leaning a little.
-    const double lean_x = dice(-0.12, 0.30), lean_z = dice(-0.2, 0.2);
+    const double lean_x = dice(-0.08, 0.26), lean_z = dice(-0.2, 0.2);
     const int storeys = 3 + int(turret.height / 330);
     for (int storey = 0; storey < storeys; ++storey) {
       const double t = double(storey) / (storeys - 1);
@@ -48,7 +48,7 @@ Cumulus::Cumulus(const CumulusShape& shape) : shape_(shape), top_m_(0) {
       const double y = 30 + t * (turret.height - turret.head_radius);
       const glm::dvec3 centre = {turret.x + lean_x * y + dice(-50, 50), y,
                                  turret.z + lean_z * y + dice(-50, 50)};
-      const Bubble bubble = {centre * scale, radius * scale, 110 * scale};
+      const Bubble bubble = {centre * scale, radius * scale, 70 * scale};
       bubbles_.push_back(bubble);
       grow(bubble, storey == storeys - 1 ? 3 : 2, dice);
     }

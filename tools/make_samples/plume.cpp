@@ -256,7 +256,7 @@ void Plume::step() {
 
 std::vector<SampleGrid> make_plume(const PlumeSettings& settings, double voxel_m,
                                    const std::vector<int>& steps) {
-  constexpr float kLeast = 0.004f;  // thinner smoke is not worth a voxel
+  constexpr double kLeast = 0.004;  // thinner smoke is not worth a voxel
   std::vector<SampleGrid> frames;
   Plume plume(settings);
   int done = 0;
@@ -267,8 +267,10 @@ std::vector<SampleGrid> make_plume(const PlumeSettings& settings, double voxel_m
     frame.translation = {-0.5 * voxel_m * settings.nx, 0, -0.5 * voxel_m * settings.nz};
     const Voxel high = {settings.nx - 1, settings.ny - 1, settings.nz - 1};
     frame.blocks = sample({0, 0, 0}, high, [&](const Voxel& at) {
-      const float density = plume.smoke().at(at[0], at[1], at[2]);
-      return wanted == 0 || density < kLeast ? 0.0 : double(density);
+      // the bed of the fire is no smoke: fade in over the rows where the air is drawn in
+      const double density =
+          double(plume.smoke().at(at[0], at[1], at[2])) * smooth_step(3, 10, at[1]);
+      return wanted == 0 || density < kLeast ? 0.0 : double(float(density));
     });
     frames.push_back(std::move(frame));
   }

@@ -124,12 +124,29 @@ double TileBoxes::value(const Corner& at) const {
   return 0;
 }
 
-double TileBoxes::max_value(NodeKey key) const {
-  const auto [low, high] = reach(key, step(key.level()));
-  double most = 0;
-  for (const TileBox& box : boxes_)
-    if (overlap(box, low, high)) most = std::max(most, box.value);
-  return most;
+// A box that the node's closed box does not meet lends its samples, and those of all nodes below,
+// no more than its share at the nearest face: the hats below are narrower.
+double TileBoxes::bound(NodeKey key, double rest) const {
+  const std::int64_t s = step(key.level()), cells = lattice_.cells(lattice_.max_level())[0];
+  const auto [low, high] = closed_box(key, s);
+  const auto [reach_low, reach_high] = reach(key, s);
+  double met = rest, lent = 0, most = rest;
+  for (const TileBox& box : boxes_) {
+    if (!overlap(box, reach_low, reach_high)) continue;
+    most = std::max(most, box.value);
+    double nearest = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (box.low[a] > high[a])
+        nearest = std::min(nearest, share(high[a], box.low[a], box.high[a], s, cells));
+      if (box.high[a] < low[a])
+        nearest = std::min(nearest, share(low[a], box.low[a], box.high[a], s, cells));
+    }
+    if (overlap(box, low, high))
+      met = std::max(met, box.value);
+    else
+      lent += nearest * box.value;
+  }
+  return std::min(most, met + lent);
 }
 
 NodeSummary TileBoxes::summary(NodeKey key, const NodeSummary& rest,
@@ -152,13 +169,12 @@ NodeSummary TileBoxes::summary(NodeKey key, const NodeSummary& rest,
     return result;
   }
   result.constant = false;
-  const double most = std::max(max_value(key), double(rest.max_extinction_per_m));
   result.min_extinction_per_m = 0;
-  result.max_extinction_per_m = decoded_bound(most);
+  result.max_extinction_per_m = decoded_bound(bound(key, double(rest.max_extinction_per_m)));
   if (is_finest) return result;
 
-  // Both parts lie in [0, most], coarse and fine. <filtered beta^2> is linear in the parts, which
-  // share no voxel; <c^2> is not, so the cross term is taken out.
+  // Both parts lie between 0 and the bound, coarse and fine. <filtered beta^2> is linear in the
+  // parts, which share no voxel; <c^2> is not, so the cross term is taken out.
   result.error_bound_per_m = double(result.max_extinction_per_m);
   BrickSamples mean{}, square{};
   add(key, mean.data(), false);

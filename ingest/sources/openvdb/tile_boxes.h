@@ -40,7 +40,7 @@ class TileBoxes {
  private:
   std::int64_t step(int level) const { return std::int64_t{1} << (lattice_.max_level() - level); }
   void add(NodeKey key, double* samples, bool squared) const;
-  double max_value(NodeKey key) const;
+  double bound(NodeKey key, double rest) const;
 
   Lattice lattice_;
   std::vector<TileBox> boxes_;

@@ -1,15 +1,31 @@
 #include "vdb_archive.h"
 
+#include <openvdb/io/DelayedLoadMetadata.h>
+
 #include <algorithm>
 
 namespace nepho::vdb {
 
 using openvdb::GridBase;
 
+namespace {
+
+// Once per process. The metadata of delayed loading are not used here, and their reader allocates
+// what they claim: 4 GB from one wrong byte. Unregistered, they are bytes like any unknown kind.
+void initialize() {
+  static const bool done = [] {
+    openvdb::initialize();
+    openvdb::io::DelayedLoadMetadata::unregisterType();
+    return true;
+  }();
+  (void)done;
+}
+
+}  // namespace
+
 VdbArchive::VdbArchive(const std::string& file)
     : stream_(file, std::ios::binary), tags_(new openvdb::io::StreamMetadata) {
-  static const bool initialized = [] { return openvdb::initialize(), true; }();
-  (void)initialized;
+  initialize();
   stream_.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
   tags_->setSeekable(true);
   openvdb::io::setStreamMetadataPtr(stream_, tags_, /*transfer=*/false);
