@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs, configures and builds preset release: the common part of demo.sh and test.sh.
+# build.sh [TARGET...]: installs, configures and builds preset release (default: everything): the
+# common part of demo.sh and test.sh.
 # JOBS = parallel compilers (default: cores, but no more than 1.5 GiB of memory each).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -22,5 +23,6 @@ start_s=$SECONDS
 # Set or not, it is handed over: a folder remembered from an earlier run would be a lie.
 cmake --preset release -DNEPHO_REAL_DATA="${NEPHO_REAL_DATA:-}"
 configured_s=$SECONDS
-NINJA_STATUS='[%f/%t %e s] ' cmake --build --preset release -j "${JOBS:-$(default_jobs)}"
+NINJA_STATUS='[%f/%t %e s] ' cmake --build --preset release -j "${JOBS:-$(default_jobs)}" \
+  ${1:+--target "$@"}
 echo "build: configured in $((configured_s - start_s)) s, built in $((SECONDS - configured_s)) s"

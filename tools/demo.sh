@@ -5,7 +5,7 @@
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 start_s=$SECONDS
-"$root/tools/build.sh"
+"$root/tools/build.sh" programs
 cd "$root"
 program=build/release/bin/nephoscope
 mkdir -p out
