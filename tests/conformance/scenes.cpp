@@ -32,7 +32,7 @@ ConformanceScene analytic(const std::string& name, const std::vector<Value>& val
     parameter.is_text = !value.text.empty();
     volume.parameters.push_back(parameter);
   }
-  return {name, volume};
+  return {name, volume, "analytic", 0};
 }
 
 Value kind(const std::string& word) {
@@ -79,17 +79,28 @@ std::vector<ConformanceScene> analytic_scenes() {
 
 std::vector<ConformanceScene> file_scenes() {
   std::vector<ConformanceScene> scenes;
+  const SourceHost host(default_module_folders());
   const char* files = std::getenv("NEPHO_CONFORMANCE_FILES");
   std::istringstream parts(files ? files : "");
   for (std::string file; std::getline(parts, file, ':');) {
     if (file.empty()) continue;
-    std::string name = std::filesystem::path(file).stem().string();
-    for (char& c : name)
+    ConformanceScene scene;
+    if (const auto at = file.find('@', file.rfind('/') + 1); at != file.npos) {
+      scene.time = std::stoul(file.substr(at + 1));
+      scene.name = "_time" + file.substr(at + 1);
+      file.resize(at);
+    }
+    const std::filesystem::path path = file;
+    const std::string ending = path.extension().string();
+    const SourceManifest* module = host.find(ending.empty() ? "" : ending.substr(1));
+    scene.source = module ? module->id : "none";
+    scene.name = path.stem().string() + scene.name;
+    std::erase_if(scene.name, [](char c) { return c == '#' || c == '.'; });
+    for (char& c : scene.name)
       if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-    VolumeSpec volume;
-    volume.name = name;
-    volume.files = {file};
-    scenes.push_back({name, volume});
+    scene.volume.name = scene.name;
+    scene.volume.files = {file};
+    scenes.push_back(scene);
   }
   return scenes;
 }
@@ -98,11 +109,11 @@ std::unique_ptr<BrickSource> open_scene(const VolumeSpec& volume) {
   return SourceHost(default_module_folders()).open(volume);
 }
 
-DecodedBrick read_decoded(const BrickSource& source, NodeKey key) {
+DecodedBrick read_decoded(const BrickSource& source, NodeKey key, double time_s) {
   std::vector<std::uint16_t> codes(kBrickVolume);
   ChannelView view;
   view.codes = codes.data();
-  const Status status = source.read(key, source.info().times_s.front(), {&view, 1});
+  const Status status = source.read(key, time_s, {&view, 1});
   if (status != Status::kOk) throw std::runtime_error(to_string(status));
   DecodedBrick brick;
   for (const std::uint16_t code : codes)
@@ -115,21 +126,22 @@ DecodedBrick read_decoded(const BrickSource& source, NodeKey key) {
   return brick;
 }
 
-NodeSummary summary_of(const BrickSource& source, NodeKey key) {
+NodeSummary summary_of(const BrickSource& source, NodeKey key, double time_s) {
   NodeSummary summary;
-  const Status status = source.summary(key, source.info().times_s.front(), summary);
+  const Status status = source.summary(key, time_s, summary);
   if (status != Status::kOk) throw std::runtime_error(to_string(status));
   return summary;
 }
 
-std::vector<std::vector<NodeKey>> nodes_by_level(const BrickSource& source, std::size_t most) {
+std::vector<std::vector<NodeKey>> nodes_by_level(const BrickSource& source, std::size_t most,
+                                                 double time_s) {
   const VolumeInfo& info = source.info();
   std::vector<std::vector<NodeKey>> levels(1);
   for (int root = 0; root < info.chart->roots(); ++root) levels[0].emplace_back(root, 0, 0, 0, 0);
   for (int level = 0; level < info.lattice.max_level(); ++level) {
     std::vector<NodeKey> finer;
     for (const NodeKey key : levels.back())
-      if (summary_of(source, key).children)
+      if (summary_of(source, key, time_s).children)
         for (const NodeKey child : info.lattice.children(key)) finer.push_back(child);
     if (finer.empty() || finer.size() > most) break;
     std::ranges::sort(finer);

@@ -9,6 +9,7 @@
 #include "analytic_field.h"
 #include "gl/frame_data.h"
 #include "gl_fixture.h"
+#include "host/source_host.h"
 #include "march_picture.h"
 #include "random.h"
 #include "reference/error_metric.h"
@@ -101,6 +102,49 @@ TEST_F(ErrorLine, TheExactSettingAgreesWithTheMarch) {
   }
 }
 
+// An exponential layer on the whole planet, from a man's height above the ground and from 1e9 m:
+// the float walk through curved cells against the double one.
+TEST_F(ErrorLine, AnExponentialLayerFromTheGroundAndFromAfar) {
+  const FieldSource layer(std::make_shared<ShellChart>(Ellipsoid::wgs84(), 0, 16000),
+                          Lattice({kSplitXyz, kSplitXyz}), [](glm::dvec3 p) {
+                            return 3e-5 *
+                                   std::exp(-geodetic_height_m(Ellipsoid::wgs84(), p) / 4000);
+                          });
+  const glm::dvec3 up = glm::normalize(glm::dvec3(0.4, 0.7, 0.3));
+  const glm::dvec3 east = glm::normalize(glm::cross(up, glm::dvec3(0, 0, 1)));
+  const double ground_m = glm::length(
+      geodetic_to_ecef_m(Ellipsoid::wgs84(), std::asin(up.z), std::atan2(up.y, up.x), 0));
+  for (const double height_m : {1.7, 1e9}) {
+    RenderRequest request = request_of({&layer});
+    request.sun.to_sun = glm::normalize(up + east);
+    request.settings.width = 32;
+    request.settings.height = 24;
+    request.settings.step_voxels = 0;
+    const glm::dvec3 eye = (ground_m + 3000 + height_m) * up;
+    request.camera = {eye, eye + (height_m > 1e6 ? -up : east + 0.3 * up), up,
+                      height_m > 1e6 ? 0.014 : 1.2};
+    const HdrImage image = render(request).image, truth = exact_picture(request);
+    double depth = 0;
+    int seen = 0;
+    for (std::size_t p = 0; p < truth.optical_depth.size(); ++p) {
+      if (truth.optical_depth[p] < 1e-4 || !std::isfinite(truth.optical_depth[p])) continue;
+      ++seen;
+      depth = std::max(
+          depth, std::abs(double(image.optical_depth[p]) / double(truth.optical_depth[p]) - 1));
+    }
+    const double error = picture_error(image, truth);
+    std::printf("measured: exponential layer from %g m: %d rays, depth %.1e, luminance %.1e\n",
+                height_m, seen, depth, error);
+    report_accuracy("Renderer against the reference march, cell-exact setting",
+                    height_m > 1e6 ? "exponential layer on the shell from 1e9 m"
+                                   : "exponential layer on the shell from 1.7 m",
+                    error, 0.02, "relative rms of luminance");
+    EXPECT_GT(seen, 200) << height_m;
+    EXPECT_LE(depth, 2e-3) << height_m;
+    EXPECT_LE(error, 0.02) << height_m;
+  }
+}
+
 TEST_F(ErrorLine, ShorterStepsConvergeOnTheExactSetting) {
   Random random;
   RenderRequest request = picture_of({&clumpy()}, random);
@@ -154,6 +198,33 @@ TEST_F(ErrorLine, HoldsWithinThreeOnScenesDrawnFromASeed) {
     EXPECT_EQ(result.error.light_model_basis, "table, slabs");
   }
 }
+
+#ifdef NEPHO_TEST_REAL_DATA
+TEST_F(ErrorLine, HoldsWithinThreeOnARealFile) {
+  const SourceHost host({NEPHO_TEST_MODULES});
+  VolumeSpec spec;
+  spec.name = "wdas";
+  spec.source = "openvdb";
+  spec.files = {std::string(NEPHO_TEST_REAL_DATA) + "/vdb/wdas_cloud_sixteenth.vdb"};
+  const std::unique_ptr<BrickSource> cloud = host.open(spec);
+  RenderRequest request = request_of({cloud.get()});
+  request.volumes[0].phase = cloud->info().phase;
+  request.settings.light = Light::kOctaves;
+  request.settings.width = 48;
+  request.settings.height = 27;
+  request.settings.budget_mib = 3;  // binds: level of detail has an error to speak of
+  request.settings.probe_pixels = 96;
+  request.sun.to_sun = glm::normalize(glm::dvec3(-0.6, -0.5, 0.7));
+  request.camera = {{-600, -900, 200}, {30, -30, 100}, {0, 0, 1}, 0.5};
+  const RenderResult result = render(request);
+  const Forest forest = build_forest(request.volumes, gl::refinement_of(request));
+  const HdrImage cut = march_picture(CutLevels(forest), request);
+  expect_within_three("integration", result.error.integration, picture_error(result.image, cut));
+  expect_within_three(
+      "level of detail", result.error.level_of_detail,
+      picture_error(cut, march_picture(FinestLevels(request.volumes, 64), request)));
+}
+#endif
 
 }  // namespace
 }  // namespace nepho::test

@@ -195,7 +195,7 @@ TEST_F(Renderer, ARayThatIsCutOffIsNotShown) {
   const FieldSource source(box(800, 800), isotropic(1), [](glm::dvec3 p) { return 1e-6 * p.z; });
   RenderRequest request = request_of({&source});
   request.camera = {{0, -1000, 400}, {0, 0, 400}, {0, 0, 1}, 0.2};
-  request.settings.width = request.settings.height = 4;
+  request.settings.width = request.settings.height = 2;
   request.settings.step_voxels = 1;
   const HdrImage coarse = render(request).image;
   request.settings.step_voxels = 1e-4;  // 160000 steps a ray

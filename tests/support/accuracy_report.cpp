@@ -17,9 +17,14 @@ void refuse_separators(const std::string& text) {
 
 void report_accuracy(const std::string& section, const std::string& name, double measured,
                      double bound, const std::string& unit) {
-  for (const std::string& text : {section, name, unit}) refuse_separators(text);
   std::printf("measured: %s: %s: %.2e (bound %.2e) %s\n", section.c_str(), name.c_str(), measured,
               bound, unit.c_str());
+  append_accuracy_row(section, name, measured, bound, unit);
+}
+
+void append_accuracy_row(const std::string& section, const std::string& name, double measured,
+                         double bound, const std::string& unit) {
+  for (const std::string& text : {section, name, unit}) refuse_separators(text);
   const char* path = std::getenv("NEPHO_ACCURACY_OUT");
   if (!path || !*path) return;
   std::FILE* file = std::fopen(path, "a");

@@ -10,5 +10,8 @@ namespace nepho::test {
 // the larger measurement stays. `unit` is "1" for a ratio.
 void report_accuracy(const std::string& section, const std::string& name, double measured,
                      double bound, const std::string& unit);
+// The row alone, for a test that prints a table of its own.
+void append_accuracy_row(const std::string& section, const std::string& name, double measured,
+                         double bound, const std::string& unit);
 
 }  // namespace nepho::test

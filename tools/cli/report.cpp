@@ -16,7 +16,12 @@ std::string format(const char* pattern, auto... values) {
 }
 
 std::string percent(double part) {
-  return part < 0 ? "not measured" : format("%.2g %%", 100 * part);
+  if (part < 0) return "not measured";
+  // Two digits, and no exponent where a reader can do without.
+  char text[32];
+  const double value = 100 * part;
+  std::snprintf(text, sizeof text, value >= 9.95 ? "%.0f %%" : "%.2g %%", value);
+  return text;
 }
 
 std::string mib(std::uint64_t bytes) {

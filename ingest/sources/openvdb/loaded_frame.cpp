@@ -5,6 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+// A mistake for the conformance suite to find.
+#ifdef NEPHO_MUTANT_HALF
+#define NEPHO_MUTATION_FACTOR 0.5
+#else
+#define NEPHO_MUTATION_FACTOR 1.0
+#endif
+
 namespace nepho::vdb {
 namespace {
 
@@ -62,7 +69,8 @@ SparsePyramid::Field LoadedFrame::leaves() const {
 
 void LoadedFrame::leaf_samples(NodeKey finest, double* values) const {
   grid_->samples(layout_.corner(finest), false, values);
-  for (double* at = values; at != values + kBrickVolume; ++at) *at *= scale_per_m_;
+  for (double* at = values; at != values + kBrickVolume; ++at)
+    *at *= NEPHO_MUTATION_FACTOR * scale_per_m_;
 }
 
 void LoadedFrame::samples(NodeKey key, double* values) const {
@@ -72,7 +80,8 @@ void LoadedFrame::samples(NodeKey key, double* values) const {
     return;
   }
   grid_->samples(layout_.corner(key), true, values);
-  for (double* at = values; at != values + kBrickVolume; ++at) *at *= scale_per_m_;
+  for (double* at = values; at != values + kBrickVolume; ++at)
+    *at *= NEPHO_MUTATION_FACTOR * scale_per_m_;
 }
 
 NodeSummary LoadedFrame::summary(NodeKey key) const {

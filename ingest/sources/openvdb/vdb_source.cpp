@@ -20,6 +20,11 @@ std::string text(double value) {
   return buffer;
 }
 
+Status refused(Status status) {
+  set_last_error(to_string(status));
+  return status;
+}
+
 // Mean over index columns of the optical depth along up, for a density scale of 1. The columns are
 // those whose cross-section is nearest to horizontal; in a sheared grid their share of a vertical
 // line is volume over horizontal area.
@@ -59,7 +64,7 @@ class VdbSource final : public BrickSource {
 
   Status read(NodeKey key, double time_s, BrickView brick) const noexcept override {
     for (const ChannelView& view : brick)
-      if (view.channel != Channel::kExtinction) return Status::kNoSuchChannel;
+      if (view.channel != Channel::kExtinction) return refused(Status::kNoSuchChannel);
     return answered(key, time_s, [&](const LoadedFrame& frame) {
       BrickSamples samples;
       frame.samples(key, samples.data());
@@ -89,7 +94,7 @@ class VdbSource final : public BrickSource {
   Status answered(NodeKey key, double time_s, Answer&& answer) const noexcept {
     try {
       if (const Status status = check_request(info_, key, time_s); status != Status::kOk)
-        return status;
+        return refused(status);
       const auto at = std::ranges::find(info_.times_s, time_s) - info_.times_s.begin();
       answer(*cache_.get(shown_[std::size_t(at)].file));
       return Status::kOk;
