@@ -184,6 +184,17 @@ TEST(Framing, looks_up_at_a_cloud_and_down_on_a_layer) {
   EXPECT_GT(layer.eye_m.z, layer.target_m.z + 10);
 }
 
+// From the side, or below its top, the eye would stand in a layer that goes on for ever.
+TEST(Framing, stands_above_a_layer_without_an_end) {
+  for (const double height : {3.0, 100.0, 900.0}) {
+    const auto corners = box(glm::dvec3(0), {100, 100, height});
+    const Camera camera = frame_camera(corners, {}, {}, 1.5, true);
+    EXPECT_GT(camera.eye_m.z, height / 2) << height;
+    const glm::dvec3 ahead = glm::normalize(camera.target_m - camera.eye_m);
+    EXPECT_LT(std::asin(ahead.z) + 0.3, 0) << "the horizon is out of the picture, " << height;
+  }
+}
+
 TEST(Framing, what_is_asked_for_is_kept) {
   CameraSpec wish;
   wish.eye_m = glm::dvec3(10, 20, 30);

@@ -45,6 +45,14 @@ render_repeats_from_its_metadata() {
     has info.txt '^nephoscope:error: error \(estimated\): integration'
     has info.txt '^nephoscope:version: [0-9]'
   done
+  # Without a name for the second one, it stands beside the first, which is not touched.
+  ending=ppm
+  if [ -f in/one.png ]; then ending=png; fi
+  cp "in/one.$ending" kept
+  (cd in && nephoscope render "one.$ending") >again.txt
+  cmp "in/one.$ending" kept || fail "replaced its input"
+  has again.txt "^one-again.$ending: 32x18"
+  nephoscope compare "in/one.$ending" "in/one-again.$ending" >same.txt && has same.txt 'bit for bit'
   # A changed option is another picture: the comparison above can fail.
   nephoscope render in/one.ppm --sun 200,40 -o three.ppm >/dev/null
   nephoscope compare in/one.ppm three.ppm >differ.txt && has differ.txt 'not the same pixels'

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 
+#include "core/log.h"
 #include "vdb_files.h"
 
 namespace nepho::test {
@@ -124,6 +125,24 @@ TEST(Facts, CountWhatWasCleaned) {
   EXPECT_FALSE(any_contains(plain, "inactive"));
 }
 
+// Whoever only renders hears of it too, each time such a frame is read.
+TEST(Facts, WarnOfWhatWasChanged) {
+  std::vector<std::string> heard;
+  set_log_sink(
+      [](void* context, LogLevel level, const char* text) {
+        if (level == LogLevel::kWarning)
+          static_cast<std::vector<std::string>*>(context)->push_back(text);
+      },
+      &heard);
+  open(twin("plain"));
+  EXPECT_TRUE(heard.empty());
+  open(twin("not_finite"));
+  set_log_sink(nullptr, nullptr);
+  ASSERT_EQ(heard.size(), 1u);
+  EXPECT_TRUE(any_contains(heard, "not_finite.vdb [density]: 2 active values are not finite and 2"))
+      << heard.front();
+}
+
 TEST(Choice, OfTheGrid) {
   EXPECT_TRUE(any_contains(open(twin("other_name"))->info().facts, "Grid smoke (float)"));
   EXPECT_TRUE(any_contains(open(twin("half"))->info().facts, "Grid density (half)"));
@@ -173,6 +192,19 @@ TEST(Sequence, OneFrameHasTheBoxAndScaleOfAll) {
   EXPECT_EQ(one->info().times_s, std::vector<double>{3 / 24.0});
   EXPECT_EQ(one->info().bounds.high, all->info().bounds.high);
   EXPECT_EQ(brightest(*one, 3 / 24.0), brightest(*all, all->info().times_s[3]));
+}
+
+TEST(Sequence, SaysWhichFrameStandsInForAMissingOne) {
+  const std::string file = twin("sequence");
+  EXPECT_TRUE(any_contains(open(file, {number("frame", 3)})->info().assumptions,
+                           "Frame 3 is missing: " + (folder() / "sequence.0002.vdb").string()));
+  EXPECT_FALSE(any_contains(open(file, {number("frame", 4)})->info().assumptions, "missing"));
+  // A long gap is one line.
+  fs::copy(folder() / "sequence.0004.vdb", folder() / "sequence.5000.vdb");
+  const auto facts = open(file)->info().facts;
+  fs::remove(folder() / "sequence.5000.vdb");
+  EXPECT_TRUE(any_contains(facts, "Frames 5 to 4999 are missing"));
+  EXPECT_LT(facts.size(), 10u);
 }
 
 TEST(Point, IsTrilinearBetweenVoxels) {

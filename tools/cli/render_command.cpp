@@ -28,10 +28,10 @@ fs::path output_of(const RenderOptions& options, const PictureFiles& pictures) {
   } catch (const Error&) {
     path = stem + ".ppm";
   }
+  // A picture that is drawn again stands beside the first.
   std::error_code ignored;
   for (const std::string& input : options.inputs)
-    if (fs::equivalent(path, input, ignored))
-      throw Error({"would replace its own input", path.string(), "another name with -o", "", ""});
+    if (fs::equivalent(path, input, ignored)) return stem + "-again" + path.extension().string();
   return path;
 }
 

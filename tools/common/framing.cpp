@@ -16,6 +16,7 @@ constexpr double kMargin = 1.08;             // air around the cloud
 constexpr double kViewAzimuth_rad = 0.6;     // looking north-north-east, the cloud's corner ahead
 constexpr double kLookUp_rad = 0.14;         // from below: the horizon stays low
 constexpr double kLookDown_rad = 0.35;       // on a layer
+constexpr double kLookIntoLayer_rad = 0.9;   // on one without an end: no horizon in sight
 constexpr double kFlat = 0.15;               // a layer: height over width
 
 void add_corners(const VolumeInfo& info, NodeKey key, std::vector<glm::dvec3>& points) {
@@ -134,12 +135,12 @@ std::vector<glm::dvec3> occupied_points(const BrickSource& source, double time_s
 }
 
 Camera frame_camera(std::span<const glm::dvec3> points, const LocalAxes& axes,
-                    const CameraSpec& wish, double aspect) {
+                    const CameraSpec& wish, double aspect, bool endless) {
   Camera camera;
   camera.vertical_fov_rad = wish.vertical_fov_rad.value_or(kDefaultFov_rad);
   const Extents size = extents(points, axes.east, axes.north, axes.up);
   const bool flat = size.z.size() < kFlat * std::min(size.x.size(), size.y.size());
-  const double pitch_rad = flat ? -kLookDown_rad : kLookUp_rad;
+  const double pitch_rad = endless ? -kLookIntoLayer_rad : flat ? -kLookDown_rad : kLookUp_rad;
   const glm::dvec3 horizontal =
       std::sin(kViewAzimuth_rad) * axes.east + std::cos(kViewAzimuth_rad) * axes.north;
   glm::dvec3 forward = std::cos(pitch_rad) * horizontal + std::sin(pitch_rad) * axes.up;

@@ -24,9 +24,10 @@ NodeSummary summary_of(const BrickSource& source, NodeKey key, double time_s);
 std::vector<glm::dvec3> occupied_points(const BrickSource& source, double time_s);
 
 // A three-quarter view that holds every point with a small margin: from slightly below mid height,
-// or from above for a layer that is wide and flat. Given eye or target are kept.
+// or from above for a layer that is wide and flat, or that goes on beyond its points (`endless`: a
+// periodic box). Given eye or target are kept.
 Camera frame_camera(std::span<const glm::dvec3> points, const LocalAxes& axes,
-                    const CameraSpec& wish, double aspect);
+                    const CameraSpec& wish, double aspect, bool endless = false);
 
 // 40 degrees high, 55 degrees to the left of straight behind the camera.
 glm::dvec3 sun_over_left_shoulder(const Camera& camera, const glm::dvec3& up);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bricks/box_chart.h"
 #include "common/framing.h"
 #include "core/error.h"
 #include "scene/scene_file.h"
@@ -52,6 +53,14 @@ glm::dvec3 rough_middle(const std::vector<glm::dvec3>& points) {
   return sum;
 }
 
+// A layer that goes on beyond its box: seen from the side, the eye would be inside.
+bool endless(const BrickSource& source) {
+  const Chart& chart = *source.info().chart;
+  if (chart.kind() != ChartKind::kBox) return false;
+  const Periodic periodic = static_cast<const BoxChart&>(chart).periodic();
+  return periodic.x || periodic.y;
+}
+
 Camera find_camera(const OpenedScene& opened, const Placement& frame) {
   const CameraSpec& wish = opened.scene.camera;
   std::vector<glm::dvec3> points;
@@ -71,8 +80,9 @@ Camera find_camera(const OpenedScene& opened, const Placement& frame) {
                            : wish.eye_m  ? *wish.eye_m
                                          : rough_middle(points);
   const RenderSettings& settings = opened.scene.render;
-  return frame_camera(points, axes_at(opened, frame, about), wish,
-                      double(settings.width) / settings.height);
+  return frame_camera(
+      points, axes_at(opened, frame, about), wish, double(settings.width) / settings.height,
+      std::ranges::any_of(opened.sources, [](const auto& s) { return endless(*s); }));
 }
 
 void find_light(OpenedScene& opened, const Placement& frame, const Camera& camera) {

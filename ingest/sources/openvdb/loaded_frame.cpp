@@ -114,6 +114,7 @@ std::shared_ptr<const LoadedFrame> FrameCache::keep(std::size_t file,
                                                     std::unique_ptr<VdbGrid> grid) {
   while (frames_.size() >= kKept) frames_.pop_back();  // first, so that never three are held
   auto frame = std::make_shared<const LoadedFrame>(layout_, std::move(grid), scale_per_m_);
+  on_load_(file, frame->grid().tally());
   frames_.emplace_front(file, frame);
   return frame;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -39,7 +40,10 @@ class LoadedFrame {
 // The last two frames that were asked for.
 class FrameCache {
  public:
-  explicit FrameCache(const VolumeLayout& layout) : layout_(layout) {}
+  // `on_load` hears of every frame that is read, under the cache's lock.
+  using OnLoad = std::function<void(std::size_t file, const Tally& tally)>;
+  FrameCache(const VolumeLayout& layout, OnLoad on_load)
+      : layout_(layout), on_load_(std::move(on_load)) {}
   void set_scale(double scale_per_m) { scale_per_m_ = scale_per_m; }
   double scale_per_m() const { return scale_per_m_; }
   // Loads if need be, while other callers wait. Throws Error.
@@ -52,6 +56,7 @@ class FrameCache {
   std::shared_ptr<const LoadedFrame> keep(std::size_t file, std::unique_ptr<VdbGrid> grid);
 
   const VolumeLayout& layout_;
+  OnLoad on_load_;
   double scale_per_m_ = 1;
   std::mutex mutex_;
   std::list<std::pair<std::size_t, std::shared_ptr<const LoadedFrame>>> frames_;  // newest first

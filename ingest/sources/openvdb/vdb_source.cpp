@@ -51,7 +51,8 @@ class VdbSource final : public BrickSource {
   explicit VdbSource(const SourceRequest& request)
       : options_(parse_options(request)),
         layout_(lay_out(options_, request.placement)),
-        cache_(layout_) {
+        cache_(layout_, [this, log = Log{request.log_sink, request.log_context}](
+                            std::size_t file, const Tally& tally) { warn(log, file, tally); }) {
     describe();
     load_first();
   }
@@ -111,6 +112,11 @@ class VdbSource final : public BrickSource {
   void load_first();
   double choose_scale(const VdbGrid* grid);
   void report(const LoadedFrame& frame);
+  struct Log {
+    LogSink sink;
+    void* context;
+  };
+  void warn(const Log& log, std::size_t file, const Tally& tally) const;
 
   Options options_;
   VolumeLayout layout_;
@@ -144,6 +150,9 @@ void VdbSource::choose_frames() {
                    std::to_string(first) + " to " + std::to_string(all.back().number),
                    std::to_string(wanted), ""});
     shown_ = {all[std::size_t(wanted - first)]};
+    if (std::ranges::binary_search(layout_.sequence.gaps, wanted))
+      info_.assumptions.push_back("Frame " + std::to_string(wanted) + " is missing: " +
+                                  layout_.sequence.files[shown_.front().file] + " is drawn.");
   }
   info_.times_s.clear();
   for (const Frame& frame : shown_)
@@ -203,6 +212,16 @@ void VdbSource::report(const LoadedFrame& frame) {
   extremes[0] = tally.max * cache_.scale_per_m();
   std::array<std::uint16_t, kBrickVolume> codes;
   info_.channels[0].max_abs_error = quantise(extremes, codes).max_abs_error;
+}
+
+// Each time a frame is loaded, so that no picture is made of changed data without a word.
+void VdbSource::warn(const Log& log, std::size_t file, const Tally& tally) const {
+  if (!log.sink || tally.non_finite + tally.negative == 0) return;
+  const std::string text = layout_.sequence.files[file] + " [" + layout_.grid +
+                           "]: " + std::to_string(tally.non_finite) +
+                           " active values are not finite and " + std::to_string(tally.negative) +
+                           " are negative: they count as 0";
+  log.sink(log.context, LogLevel::kWarning, text.c_str());
 }
 
 }  // namespace

@@ -27,6 +27,19 @@ double difference(const VdbHeader& a, const VdbHeader& b) {
   return std::max(most, glm::length(a.translation - b.translation)) / voxel;
 }
 
+// One fact for each run of missing frames: a sequence may lack most of a million.
+void report_gaps(VolumeLayout& layout) {
+  const std::vector<long>& gaps = layout.sequence.gaps;
+  for (std::size_t first = 0, end; first < gaps.size(); first = end) {
+    end = first + 1;
+    while (end < gaps.size() && gaps[end] == gaps[end - 1] + 1) ++end;
+    const std::string which = end - first == 1 ? "Frame " + std::to_string(gaps[first]) + " is"
+                                               : "Frames " + std::to_string(gaps[first]) + " to " +
+                                                     std::to_string(gaps[end - 1]) + " are";
+    layout.facts.push_back(which + " missing: the one before is held.");
+  }
+}
+
 void read_headers(const Options& options, VolumeLayout& layout) {
   layout.grid = options.grid;
   bool has_first = false;
@@ -52,8 +65,7 @@ void read_headers(const Options& options, VolumeLayout& layout) {
                            " files have no active voxel.");
   if (!layout.headers[layout.first_file].has_grid && options.grid.empty())
     layout.facts.push_back("The file has no grid at all: an empty volume.");
-  for (const long gap : layout.sequence.gaps)
-    layout.facts.push_back("Frame " + std::to_string(gap) + " is missing: the one before is held.");
+  report_gaps(layout);
 }
 
 void fit_lattice(VolumeLayout& layout) {
