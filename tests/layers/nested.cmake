@@ -1,10 +1,10 @@
 # cmake -DSRC= -DOUT= -DLAYERS=formats;render [-DPLANT=mutation.cmake] [-DPLANT_FILE= -DPLANT_TEXT=]
-#       [-DBUILD=target;...] [-DRUN=regex] [-DEXPECT=regex] [-DOPTIONS=...] -P nested.cmake
+#       [-DBUILD=target,...] [-DRUN=regex] [-DEXPECT=regex] [-DOPTIONS=...] -P nested.cmake
 # Copies some layers into an empty tree, where nothing else can be found by any path, with the real
 # top-level CMakeLists.txt less the absent layers, then configures, builds and tests it.
 #   PLANT       is included just before nepho_check_layers(); its first line is "# expect: regex"
 #   PLANT_FILE  gets PLANT_TEXT as its first line
-#   RUN         labels of the tests to run; without it none are built
+#   RUN         names of the tests to run; without it no tests are configured
 #   EXPECT      (or PLANT's) must appear and the run must fail; without it the run must succeed
 # The build folder has the depth of build/<preset>, so that ccache knows the relative paths again.
 cmake_minimum_required(VERSION 3.25)
@@ -61,10 +61,11 @@ endif()
 run(configure ${CMAKE_COMMAND} -S ${tree} -B ${build} -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
     -DCMAKE_CXX_COMPILER=${COMPILER} ${OPTIONS})
 if(BUILD AND NOT stopped)
+  string(REPLACE "," ";" BUILD "${BUILD}")
   run(build ${CMAKE_COMMAND} --build ${build} --target ${BUILD})
 endif()
 if(RUN AND NOT stopped)
-  run(test ${CMAKE_CTEST_COMMAND} --test-dir ${build} --no-tests=error --output-on-failure -L ${RUN}
+  run(test ${CMAKE_CTEST_COMMAND} --test-dir ${build} --no-tests=error --output-on-failure -R ${RUN}
       -LE "^slow$|^layers$")
 endif()
 if(EXPECT AND NOT stopped)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "accuracy_report.h"
 #include "oracle.h"
 #include "vdb_files.h"
 
@@ -69,6 +70,8 @@ inline Identity compare(const BrickSource& source, double time_s, double scale_p
 inline void expect_identity(const char* name, const Identity& found) {
   std::printf("measured: %-22s %8zu voxels, worst error %.3f of the bound, position %.1e voxels\n",
               name, found.voxels, found.worst_of_bound, found.worst_position);
+  append_accuracy_row("conformance", "openvdb: voxels off finest samples / code error",
+                      found.worst_of_bound, 1, "1");
   EXPECT_EQ(found.over, 0u) << name << ": a voxel in no brick";
   EXPECT_LE(found.worst_of_bound, 1) << name;
   EXPECT_LE(found.worst_position, 1e-6) << name;

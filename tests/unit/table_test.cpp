@@ -1,6 +1,8 @@
 // The tables of tests/data, each a TEST; and the reader's own tests.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "accuracy_report.h"
@@ -86,8 +88,13 @@ TEST(Table, GeodeticHeight) {
 class TableReader : public testing::Test {
  protected:
   static std::vector<TableCase> read(const std::string& text) {
-    const std::string path = testing::TempDir() + "nepho_reader.table";
+    const std::string path =
+        testing::TempDir() + "nepho_reader_" + std::to_string(getpid()) + ".table";
     std::ofstream(path) << text;
+    struct Removed {
+      const std::string& path;
+      ~Removed() { std::filesystem::remove(path); }
+    } removed{path};
     return read_table(path);
   }
   static std::string result(const std::string& text) {
