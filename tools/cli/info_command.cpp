@@ -92,6 +92,18 @@ Json describe(const BrickSource& source, const VolumeSpec& volume) {
   return out;
 }
 
+// A scene that is no JSON is shown as it stands: `render` says what is wrong with it.
+Json metadata_value(const std::string& key, const std::string& value) {
+  if (key != "nephoscope:scene") return value;
+  Json scene = Json::parse(value, nullptr, false);
+  return scene.is_discarded() ? Json(value) : scene;
+}
+
+std::string text_of(const Json& value) {
+  return value.is_string() ? value.get<std::string>()
+                           : value.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
 void print_list(const char* title, const Json& lines) {
   for (const Json& line : lines) std::printf("  %s: %s\n", title, line.get<std::string>().c_str());
 }
@@ -142,7 +154,7 @@ void info_command(const InfoOptions& options) {
   if (is_picture_name(options.input)) {
     input_kind(options.input);  // says so where there is no such file
     for (const auto& [key, value] : pictures.read_metadata(options.input))
-      out["metadata"][key] = key == "nephoscope:scene" ? Json::parse(value) : Json(value);
+      out["metadata"][key] = metadata_value(key, value);
   } else {
     const SourceHost host(default_module_folders());
     const Scene scene = scene_of(options, pictures);
@@ -157,8 +169,7 @@ void info_command(const InfoOptions& options) {
     for (const Json& volume : out["volumes"]) print_volume(volume);
   if (out.contains("metadata"))
     for (const auto& [key, value] : out["metadata"].items())
-      std::printf("%s: %s\n", key.c_str(),
-                  value.is_string() ? value.get<std::string>().c_str() : value.dump(2).c_str());
+      std::printf("%s: %s\n", key.c_str(), text_of(value).c_str());
 }
 
 }  // namespace nepho
