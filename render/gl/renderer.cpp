@@ -100,6 +100,9 @@ std::string Renderer::defines(bool lit) const {
   if (scene_.absorbs) define("ABSORPTION");
   if (lit) define("LIT");
   define("SUN_STEP", std::to_string(s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0));
+#ifdef NEPHO_MUTANT_SHADER  // tests: one planted mistake, by name
+  define(NEPHO_MUTANT_SHADER);
+#endif
   define("LIGHT_FORMAT", sky_light() ? "rgba16f" : "r16f");
   return text;
 }

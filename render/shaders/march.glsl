@@ -37,12 +37,19 @@ float extinction_at(int volume, float t_m) {
 #else
   float code = textureLod(atlas, (at + 0.5) / vec3(textureSize(atlas, 0)), 0.0).r;
 #endif
+#ifdef NEPHO_MUTANT_HALF_EXTINCTION
+  code *= 0.5;
+#endif
   return walks[volume].offset_per_m + walks[volume].range_per_m * code;
 }
 
 float total_extinction_at(float t_m) {
   float sum = 0.0;
+#ifdef NEPHO_MUTANT_GREATEST
+#define NEPHO_DO(v) sum = max(sum, extinction_at(v, t_m));
+#else
 #define NEPHO_DO(v) sum += extinction_at(v, t_m);
+#endif
   NEPHO_EACH_VOLUME
 #undef NEPHO_DO
   return sum;

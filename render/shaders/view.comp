@@ -17,7 +17,11 @@ struct Seen {
 void add_step(inout Seen seen, vec3 s0, vec3 s1, float tau) {
   float e0 = exp_e0(tau), w1 = exp_w1(tau);
   seen.radiance += seen.transmittance * tau * (s0 * e0 + (s1 - s0) * w1);
+#ifdef NEPHO_MUTANT_EULER
+  seen.transmittance *= max(1.0 - tau, 0.0);
+#else
   seen.transmittance *= exp(-tau);
+#endif
   seen.optical_depth += tau;
 }
 

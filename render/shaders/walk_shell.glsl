@@ -181,6 +181,9 @@ ivec3 shell_cross_face(int volume, inout Walk w, float t_m, int k) {
   bool u = w.leave_axis == 0;
   int axis = u ? FACE_U[w.root] : FACE_V[w.root];
   float side = (u ? FACE_U_SIGN[w.root] : FACE_V_SIGN[w.root]) * (w.leave_up ? 1.0 : -1.0);
+#ifdef NEPHO_MUTANT_OPPOSITE_FACE
+  side = -side;
+#endif
   shell_set_face(volume, w, 2 * axis + (side < 0.0 ? 1 : 0));
   ivec3 cell = w.index + ivec3(floor(shell_cells_at(volume, w, t_m)));
   int last = volumes[volume].cells[0] - 1;
