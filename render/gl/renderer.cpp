@@ -121,7 +121,8 @@ void Renderer::upload() {
   const std::uint32_t none = 0;
   overruns_ = gl::Buffer(&none, sizeof none);
   GLuint binding = 0;
-  for (const gl::Buffer* buffer : {&frame_, &volumes_, &nodes_, &bricks_, &phases_, &lit_, &overruns_})
+  for (const gl::Buffer* buffer :
+       {&frame_, &volumes_, &nodes_, &bricks_, &phases_, &lit_, &overruns_})
     buffer->bind(binding++);
   glBindTextureUnit(0, atlas_.id());
   glBindTextureUnit(1, light_atlas_.id());
@@ -225,6 +226,8 @@ void Renderer::report() {
     report.left_out.push_back("sky visibility: the sky is black; light tiles hold one channel");
   if (!scene_.absorbs) report.left_out.push_back("absorption: every co-albedo is 0");
   if (scene_.lit.empty()) report.left_out.push_back("light passes: nothing scatters");
+  if (forest_.budget_bound)
+    report.left_out.push_back("finer nodes that this view asks for: the budget is full");
   report.atlas_bytes = 2 * gl::texels(atlas_size_);
   report.sun_bytes = (sky_light() ? 8 : 2) * gl::texels(light_size_);
   report.node_bytes = scene_.nodes.size() * sizeof(NodeRecord) +
@@ -263,8 +266,7 @@ RenderResult Renderer::run() {
   timed("read back", [&] { read_back(); });
   check_overruns();
   if (request_.settings.probe_pixels > 0)
-    timed("error probe",
-          [&] { result_.error = estimate_error(request_, forest_, result_.image); });
+    timed("error probe", [&] { result_.error = estimate_error(request_, forest_, result_.image); });
   report();
   return std::move(result_);
 }

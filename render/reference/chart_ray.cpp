@@ -15,7 +15,7 @@ namespace {
 using Cell = ChartRay::Cell;
 
 // A level ray in a periodic box would never leave.
-constexpr double kMaxPeriods = 4096;
+constexpr double kMaxPeriods = 4096, kLevelPeriods = 8, kLevel = 1e-6;
 
 std::int64_t floor_clamped(double x, std::int64_t count) {
   return std::int64_t(std::clamp(std::floor(x), 0.0, double(count - 1)));
@@ -34,8 +34,11 @@ class BoxRay final : public ChartRay {
     Start s{0, t_max_m, 0, {}};
     for (int a = 0; a < 3; ++a) {
       if (periodic(a)) {
-        if (slope_[a] != 0)
-          s.end_m = std::min(s.end_m, kMaxPeriods * count_[a] / std::abs(slope_[a]));
+        if (slope_[a] == 0) continue;
+        const double period_m = count_[a] / std::abs(slope_[a]);
+        s.end_m = std::min(s.end_m, kMaxPeriods * period_m);
+        if (std::abs(slope_[2]) < kLevel * std::abs(slope_[a]))
+          s.level_end_m = std::min(s.level_end_m, kLevelPeriods * period_m);
       } else if (slope_[a] == 0) {
         if (origin_[a] < 0 || origin_[a] > count_[a]) s.end_m = -1;
       } else {
@@ -254,6 +257,15 @@ void Ground::add(const Chart& chart) {
   if (radius_m_ != 0 && radius_m_ <= radius_m) return;
   radius_m_ = radius_m;
   z_scale_ = shell->body().equatorial_m / shell->body().polar_m;
+}
+
+double Ground::sun_part(const glm::dvec3& point_m, const glm::dvec3& to_sun) const {
+  if (radius_m_ == 0) return 1;
+  const glm::dvec3 scale{1, 1, z_scale_};
+  const glm::dvec3 p = scale * point_m;
+  const double r_m = glm::length(p);
+  return f64::sun_above_horizon(radius_m_, r_m - radius_m_,
+                                glm::dot(p, glm::normalize(scale * to_sun)) / r_m);
 }
 
 double Ground::distance_m(const Ray& ray) const {

@@ -31,6 +31,8 @@ class ChartRay {
     double t_m, end_m;  // empty if end_m <= t_m
     int root;
     Cell cell;
+    // Level in a periodic box, and so without end: where eight periods are over.
+    double level_end_m = kNoDistance_m;
   };
 
   virtual ~ChartRay() = default;
@@ -50,13 +52,15 @@ class ChartRay {
 
 std::unique_ptr<ChartRay> chart_ray(const VolumeInfo& info, const Ray& ray);
 
-// The planet's body: black to the sun, `below` to the eye. Of the scene's shells, the lowest of
-// their bottoms, but no higher than sea level.
+// The planet's body: it hides the sun, and is `below` to the eye. Of the scene's shells, the lowest
+// of their bottoms, but no higher than sea level.
 class Ground {
  public:
   void add(const Chart& chart);
   // Where the ray meets it from above, or kNoDistance_m.
   double distance_m(const Ray& ray) const;
+  // Part of the sun's disc above its horizon; 1 without a ground.
+  double sun_part(const glm::dvec3& point_m, const glm::dvec3& to_sun) const;
 
  private:
   double radius_m_ = 0, z_scale_ = 1;  // in the space where it is a sphere; 0: none

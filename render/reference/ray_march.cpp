@@ -75,10 +75,11 @@ RayMarch::RayMarch(const LevelSet& levels, const RenderRequest& request, MarchSe
 }
 
 double RayMarch::optical_depth(const Ray& ray, double t_max_m) const {
-  if (ground_.distance_m(ray) < t_max_m) return std::numeric_limits<double>::infinity();
+  t_max_m = std::min(t_max_m, ground_.distance_m(ray));
   double tau = 0;
   for (std::size_t v = 0; v < levels_.size(); ++v) {
     VolumeWalk walk(levels_, v, ray, t_max_m, true);
+    const double before = tau;
     while (tau < kOpaque && walk.next()) {
       const double length_m = walk.t1_m() - walk.t0_m();
       if (walk.kind() == NodeKind::kEmpty || !(length_m > 0)) continue;
@@ -95,6 +96,7 @@ double RayMarch::optical_depth(const Ray& ray, double t_max_m) const {
         k0 = k1;
       }
     }
+    if (walk.endless() && tau > before) return std::numeric_limits<double>::infinity();
   }
   return tau;
 }
@@ -107,7 +109,9 @@ double RayMarch::visibility(const glm::dvec3& point_m, const glm::dvec3& directi
 
 RayMarch::Light RayMarch::light_at(const glm::dvec3& point_m) const {
   Light light;
-  light.tau_sun = optical_depth({point_m, glm::normalize(request_.sun.to_sun)});
+  const glm::dvec3 to_sun = glm::normalize(request_.sun.to_sun);
+  light.tau_sun = optical_depth({point_m, to_sun});
+  light.sun_part = ground_.sun_part(point_m, to_sun);
   if (!sky_lights_) return light;
   const auto& [up, east, north] = sky_axes_;
   light.visible_up = visibility(point_m, up);
@@ -250,7 +254,7 @@ class RayMarch::Trace {
         scattered += lamp_.scattering[v][std::size_t(n)] * f64::octave_transmittance(n, at.tau_sun);
       const double k = std::max(walks_[v].extinction_per_m(end.t_m), kLeastWeight_per_m);
       sum += k * (1.0 - request.volumes[v].co_albedo) *
-             (scattered * request.sun.irradiance_W_per_m2_nm + ambient);
+             (at.sun_part * scattered * request.sun.irradiance_W_per_m2_nm + ambient);
       weights += k;
     }
     return sum / weights;

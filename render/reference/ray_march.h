@@ -18,8 +18,8 @@ namespace nepho {
 // through all volumes, p_0 the table's phase function, p_n = HG(g c^n); together sum k S / sum k.
 // A step of optical depth x adds T x (S0 e0(x) + (S1 - S0) w1(x)), and is halved while the
 // estimated error of the linear source, T (1 - e^-x) |dS| |d ln S| / 8, is above `source_tolerance`
-// of the pixel's radiance. The ground is the ellipsoid under a shell: black to the sun, `below` to the
-// eye.
+// of the pixel's radiance. The ground is the ellipsoid under a shell: it hides the sun,
+// and is `below` to the eye.
 struct MarchSettings {
   double source_tolerance = 1e-4;
   double least_transmittance = 1e-6;  // the ray ends there
@@ -42,13 +42,14 @@ class RayMarch {
  public:
   RayMarch(const LevelSet& levels, const RenderRequest& request, MarchSettings settings = {});
 
-  // Through all volumes, to t_max or the end of all charts; infinite where the ground is hit.
+  // Through all volumes, to t_max, the ground or the end of all charts; infinite along a level ray
+  // in a periodic layer.
   double optical_depth(const Ray& ray, double t_max_m = kNoDistance_m) const;
   MarchResult trace(const Ray& ray) const;
 
  private:
   struct Light {
-    double tau_sun = 0, visible_up = 1, visible_side = 1, visible_down = 1;
+    double tau_sun = 0, sun_part = 1, visible_up = 1, visible_side = 1, visible_down = 1;
   };
   struct Lamp;  // what is constant along one ray
   class Trace;

@@ -27,9 +27,12 @@ VolumeWalk::VolumeWalk(const LevelSet& levels, std::size_t volume, const Ray& ra
       start_(ray_->start(t_max_m)),
       root_(start_.root),
       cell_(start_.cell),
-      done_(!(start_.end_m > start_.t_m)),
       t1_m_(start_.t_m),
-      resume_m_(start_.t_m) {}
+      resume_m_(start_.t_m) {
+  endless_ = whole_constants && start_.level_end_m < start_.end_m;
+  if (endless_) start_.end_m = start_.level_end_m;
+  done_ = !(start_.end_m > start_.t_m);
+}
 
 bool VolumeWalk::in_leaf() const {
   if (!found_ || leaf_root_ != root_) return false;

@@ -13,7 +13,9 @@ namespace nepho {
 // one. Inside a piece, extinction is smooth: in a box a cubic, exact by Simpson.
 class VolumeWalk {
  public:
-  // `whole_constants`: a constant leaf is one piece, otherwise one per cell (for its source).
+  // `whole_constants`: a constant leaf is one piece, otherwise one per cell (for its source). Such
+  // walks go towards a light: a level one through a periodic layer ends, `endless`, after 8
+  // periods.
   VolumeWalk(const LevelSet& levels, std::size_t volume, const Ray& ray, double t_max_m,
              bool whole_constants);
 
@@ -27,6 +29,7 @@ class VolumeWalk {
   double extinction_per_m(double t_m) const;  // t inside the piece
   int sub_steps(double length_m) const;       // Simpson's, for such a length of it
   std::size_t pieces() const { return pieces_; }
+  bool endless() const { return endless_; }
   int root() const { return leaf_root_; }                  // of the piece
   const ChartRay::Block& block() const { return block_; }  // its walls, in finest cells
 
@@ -42,7 +45,7 @@ class VolumeWalk {
   ChartRay::Start start_;
   int root_ = 0;
   ChartRay::Cell cell_{};  // finest cell that the next piece begins in
-  bool done_ = false, found_ = false;
+  bool endless_ = false, done_ = false, found_ = false;
   LevelLeaf leaf_;
   int leaf_root_ = 0;
   ChartRay::Block node_{}, block_{};

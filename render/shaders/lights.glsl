@@ -41,6 +41,18 @@ void begin_lights() {
 #undef NEPHO_DO
 }
 
+float sun_part;  // of the sun's disc that the planet leaves free; set by total_source_at
+
+#ifdef NEPHO_SHELL
+float sun_part_at(float t_m) {
+  dvec3 stretch = dvec3(1.0LF, 1.0LF, frame.ground_z_scale);
+  dvec3 p = stretch * (ray_start + ray_direction * double(t_m)), s = stretch * vec_of(frame.to_sun);
+  double r = sqrt(dot(p, p));
+  float sine = float(dot(p, s) / (r * sqrt(dot(s, s))));
+  return sun_above_horizon(float(frame.ground_radius_m), float(r - frame.ground_radius_m), sine);
+}
+#endif
+
 // Radiance of one volume at t_m: J / extinction, W m-2 sr-1 nm-1.
 vec3 source_at(int volume, float t_m) {
   vec3 at = walks[volume].light_tile + leaf_cells_at(volume, walks[volume], t_m);
@@ -50,7 +62,7 @@ vec3 source_at(int volume, float t_m) {
   scattered += octave_phase[volume * NEPHO_OCTAVES + n] * exp(-(octave_rate[n] * light.r));
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
-  vec3 radiance = scattered * vec_of(frame.sun_irradiance);
+  vec3 radiance = sun_part * scattered * vec_of(frame.sun_irradiance);
 #ifdef NEPHO_SKY_LIGHT
   for (int c = 0; c < 3; ++c)
     radiance[c] += sky_source(light.g, light.b, light.a, frame.zenith[c], frame.horizon[c], frame.below[c]);
@@ -66,6 +78,11 @@ vec3 source_at(int volume, float t_m) {
 vec3 total_source_at(float t_m) {
   vec3 sum = vec3(0.0);
   float weight = 0.0;
+#ifdef NEPHO_SHELL
+  sun_part = sun_part_at(t_m);
+#else
+  sun_part = 1.0;
+#endif
 #define NEPHO_DO(v)                                                        \
   if (walks[v].kind == NODE_BRICK || walks[v].kind == NODE_CONSTANT) {     \
     float k = max(extinction_at(v, t_m), 1e-30);                           \

@@ -170,11 +170,11 @@ float cell_end(float t_m, float end_m, out int sub_steps) {
 }
 #endif
 
-// Optical depth from the start to where the ray leaves all charts; `blocked` where the ground is hit.
+// Optical depth from the start to the ground, or to where the ray leaves all charts.
 const float OPAQUE = 65504.0;  // the largest half float
 float optical_depth_ahead() {
   float end_m, t = begin_walks(end_m), tau = 0.0;
-  if (t >= FAR) return end_m < FAR ? OPAQUE : 0.0;
+  if (t >= FAR) return 0.0;
   float leave = 0.0;
   int ended = t < end_m ? 0 : 1;
   while (leave < FAR && t < end_m && tau <= 1e4) {
@@ -212,5 +212,10 @@ float optical_depth_ahead() {
     if (leave >= FAR || t >= end_m || tau > 1e4) ended = 1;
   }
   count_overrun(ended);
-  return end_m < FAR ? OPAQUE : min(tau, OPAQUE);
+  // A level ray in a periodic layer never leaves it.
+#define NEPHO_DO(v) \
+  if (walks[v].endless && tau > 0.0) tau = OPAQUE;
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
+  return min(tau, OPAQUE);
 }

@@ -6,7 +6,9 @@
 // lattice and a remainder in [-1/2, 1/2], both from fp64; walls are integer differences from it.
 
 const float FAR = 1e30;
-const int MAX_WRAPS = 4096;  // a level ray in an empty periodic box would never leave
+// A level ray in a periodic box would never leave. Towards a light, eight periods tell whether there
+// is anything in its way; then it is without end.
+const int MAX_WRAPS = 4096, MAX_LEVEL_WRAPS = 8;
 
 struct Walk {
   // The ray in cells (box), or about the face's axes (shell).
@@ -32,6 +34,7 @@ struct Walk {
   int leave_axis;    // 0 x, 1 y, 2 z; -1: the start of the chart
   bool leave_up;
   int wraps;
+  bool endless;      // level, and out of wraps
 };
 
 const uint OUTSIDE = 4u, GONE = 5u;
@@ -168,6 +171,12 @@ void next_leaf(int volume, inout Walk w) {
   bool wraps = (volumes[volume].periodic >> w.leave_axis & 1) != 0;
   if (cell[w.leave_axis] < 0 || cell[w.leave_axis] >= count) {
     bool inside = wraps && ++w.wraps < MAX_WRAPS;
+#if defined(NEPHO_BOX) && !defined(NEPHO_LIT)
+    if (wraps && w.wraps >= MAX_LEVEL_WRAPS && box_is_level(w)) {
+      inside = false;
+      w.endless = true;
+    }
+#endif
 #ifdef NEPHO_SHELL
     if (is_shell(volume)) {
       if (w.leave_axis < 2) {

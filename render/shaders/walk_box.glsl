@@ -7,6 +7,7 @@ Walk box_begin(int volume) {
   w.leave_axis = -1;
   w.root = 0;
   w.wraps = 0;
+  w.endless = false;
   VolumeData v = volumes[volume];
   dvec3 from_origin = ray_start - vec_of(v.origin_m);
   dvec3 cell, slope;
@@ -45,6 +46,8 @@ Walk box_begin(int volume) {
   w.leave_m = w.anchor_m;
   return w;
 }
+
+bool box_is_level(Walk w) { return abs(w.slope.z) < 1e-6 * max(abs(w.slope.x), abs(w.slope.y)); }
 
 void box_next_wall(Walk w, ivec3 low, ivec3 high, float t_m, out float wall_m, out int axis,
                    out bool up) {

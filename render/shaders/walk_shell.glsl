@@ -97,6 +97,7 @@ Walk shell_begin(int volume) {
   w.leave_m = FAR;
   w.leave_axis = -1;
   w.wraps = 0;
+  w.endless = false;
   w.root = 0;
   VolumeData v = volumes[volume];
   double stretch;

@@ -7,6 +7,7 @@
 #include "accuracy_report.h"
 #include "analytic_field.h"
 #include "march_support.h"
+#include "physics/physics_cpp.h"
 #include "random.h"
 
 namespace nepho {
@@ -184,11 +185,26 @@ TEST(ShellMarch, TheGroundStopsTheSunAndTheEye) {
   request.sky.below_W_per_m2_sr_nm = {1, 2, 3};
   request.sun.irradiance_W_per_m2_nm = glm::dvec3{0.0};
   const RayMarch march(levels, request);
-  EXPECT_TRUE(std::isinf(march.optical_depth(upward(1000, 2.0, 0))));
-  EXPECT_TRUE(std::isfinite(march.optical_depth(upward(0, pi / 2 - 1e-6, 0))));
+  EXPECT_NEAR(march.optical_depth(upward(1000, pi, 0)), 1000 * 1e-5, 1e-8);
+  EXPECT_GT(march.optical_depth(upward(0, pi / 2 - 1e-6, 0)), 0);
   const MarchResult down = march.trace(upward(1.7, pi, 0));
   EXPECT_NEAR(down.optical_depth, 1.7e-5, 1e-8);
   EXPECT_NEAR(down.radiance_W_per_m2_sr_nm.g, 2, 1e-3);
+}
+
+// At sea level half of the disc is up when its middle is on the horizon, all or nothing of it
+// 0.004675 rad above or below; 10 km up the horizon lies 3.21 degrees lower.
+TEST(ShellMarch, TheSunSetsBehindThePlanet) {
+  const auto part = [](double height_m, double elevation_rad) {
+    return f64::sun_above_horizon(kRadius_m, height_m, std::sin(elevation_rad));
+  };
+  EXPECT_NEAR(part(0, 0), 0.5, 1e-6);
+  EXPECT_EQ(part(0, 0.0047), 1);
+  EXPECT_EQ(part(0, -0.0047), 0);
+  const double dip_rad = std::acos(kRadius_m / (kRadius_m + 10e3));
+  EXPECT_NEAR(part(10e3, -dip_rad), 0.5, 1e-4);
+  EXPECT_EQ(part(10e3, -dip_rad + 0.0048), 1);
+  EXPECT_EQ(part(10e3, -dip_rad - 0.0048), 0);
 }
 
 }  // namespace

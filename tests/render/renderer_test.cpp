@@ -206,6 +206,22 @@ TEST_F(Renderer, ARayThatIsCutOffIsNotShown) {
   }
 }
 
+// Level rays to the sky never leave a periodic layer: they must end all the same, and the layer's
+// top must be brighter than its base.
+TEST_F(Renderer, APeriodicLayerUnderASkyIsDrawn) {
+  const FieldSource layer(box(4000, 1000, {true, true}), isotropic(2),
+                          [](glm::dvec3 p) { return 2e-3 * std::exp(-p.z / 300); });
+  RenderRequest request = request_of({&layer});
+  request.settings.light = Light::kOctaves;
+  request.sky.zenith_W_per_m2_sr_nm = request.sky.horizon_W_per_m2_sr_nm = glm::dvec3(0.1);
+  request.sun.irradiance_W_per_m2_nm = glm::dvec3(0.0);
+  request.camera = {{0, 0, 3000}, {0, 0, 0}, {0, 1, 0}, 0.3};
+  request.settings.probe_pixels = 16;
+  const RenderResult result = render(request);
+  EXPECT_TRUE(std::ranges::all_of(result.image.rgb, [](float v) { return v > 0 && v < 0.1f; }));
+  EXPECT_LE(result.error.integration, 0.02);
+}
+
 TEST_F(Renderer, NoPixelIsNotANumber) {
   // Zero, thin and thick side by side; rays along axes, edges and from inside.
   const FieldSource source(box(800, 800), isotropic(2), [](glm::dvec3 p) {
