@@ -140,19 +140,6 @@ std::vector<Twin> regular() {
                                   {-2147483647, -2147483647, -2147483647}, {})};
           },
           "nephoscope", false),
-      single(
-          "box_inverted", "an inverted bounding box in the metadata",
-          [] {
-            return Grids{with_box({50, 50, 50}, {-50, -50, -50}, puff_grid().blocks)};
-          },
-          "nephoscope", false),
-      single(
-          "box_overflowing", "a bounding box of 2^32 voxels in the metadata",
-          [] {
-            return Grids{with_box({-2147483647, -2147483647, -2147483647},
-                                  {2147483647, 2147483647, 2147483647}, puff_grid().blocks)};
-          },
-          "nephoscope", false),
       {"sequence", "frame 1 empty, frame 3 missing", write_sequence, "sequence.####.vdb"},
   };
 }
@@ -177,6 +164,19 @@ std::vector<Twin> refused() {
                return Grids{with(puff_grid(), [](SampleGrid& g) { g.name = "smoke"; }),
                             with(puff_grid(), [](SampleGrid& g) { g.name = "steam"; })};
              }),
+      single(
+          "box_inverted", "an inverted bounding box in the metadata",
+          [] {
+            return Grids{with_box({50, 50, 50}, {-50, -50, -50}, puff_grid().blocks)};
+          },
+          "nephoscope", false),
+      single(
+          "box_overflowing", "a bounding box of 2^32 voxels in the metadata",
+          [] {
+            return Grids{with_box({-2147483647, -2147483647, -2147483647},
+                                  {2147483647, 2147483647, 2147483647}, puff_grid().blocks)};
+          },
+          "nephoscope", false),
       single("singular", "a transform without depth", changed([](SampleGrid& g) {
                g.columns = {{1, 0, 0}, {0, 1, 0}, {1, 1, 1e-12}};
              })),

@@ -123,6 +123,31 @@ void read_transform(const std::string& file, const GridBase& grid, VdbHeader& he
     refuse("the grid's transform is singular", "axes that span no volume");
 }
 
+// The box in the metadata is never used, but where there are voxels it tells a damaged file: one
+// that is inverted, or wider than voxels can be numbered.
+void check_metadata_box(const std::string& file, const GridBase& grid,
+                        const openvdb::CoordBBox& active) {
+  const auto low = grid.getMetadata<openvdb::Vec3IMetadata>(GridBase::META_FILE_BBOX_MIN);
+  const auto high = grid.getMetadata<openvdb::Vec3IMetadata>(GridBase::META_FILE_BBOX_MAX);
+  if (!low || !high || active.empty()) return;
+  const openvdb::Vec3i first(active.min().asPointer()), last(active.max().asPointer());
+  if (low->value() == first && high->value() == last) return;  // however far the voxels reach
+  constexpr std::int64_t kMost = std::int64_t{1} << 31;
+  const auto text = [](const openvdb::Vec3i& v) {
+    return "(" + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) +
+           ")";
+  };
+  for (int a = 0; a < 3; ++a) {
+    const std::int64_t width = std::int64_t(high->value()[a]) - low->value()[a] + 1;
+    if (width > 0 && width <= kMost) continue;
+    throw Error({width > 0 ? "the bounding box in the metadata is too large: the file is damaged"
+                           : "the bounding box in the metadata is inverted: the file is damaged",
+                 where(file, grid.getName()),
+                 "one around the voxels, " + text(first) + " to " + text(last),
+                 text(low->value()) + " to " + text(high->value()), "write or copy it again"});
+  }
+}
+
 // The first entry of this name.
 const VdbArchive::Entry& entry_of(const VdbArchive& archive, const std::string& name) {
   const auto at = std::ranges::find(archive.entries(), name,
@@ -167,6 +192,7 @@ VdbHeader read_header(const std::string& file, const std::string& wanted) {
     read_transform(file, *chosen, header);
     const openvdb::CoordBBox box =
         archive.topology(entry_of(archive, header.grid))->evalActiveVoxelBoundingBox();
+    check_metadata_box(file, *chosen, box);
     if (!box.empty())
       for (int a = 0; a < 3; ++a) {
         header.active.low[std::size_t(a)] = box.min()[a];
