@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 #include <cstdlib>
 #include <ctime>
@@ -10,6 +9,7 @@
 #include "accuracy_report.h"
 #include "analytic_field.h"
 #include "bricks/quantise.h"
+#include "march_picture.h"
 #include "march_support.h"
 #include "random.h"
 #include "reference/error_metric.h"
@@ -18,6 +18,7 @@ namespace nepho {
 namespace {
 
 using test::FieldSource;
+using test::march_picture;
 
 constexpr double kSide_m = 1000;
 
@@ -37,24 +38,6 @@ class UncodedLevels final : public CutLevels {
  private:
   const FieldSource& source_;
 };
-
-HdrImage march_picture(const LevelSet& levels, const RenderRequest& request) {
-  const RayMarch march(levels, request);
-  HdrImage image;
-  image.width = request.settings.width;
-  image.height = request.settings.height;
-  const auto n = std::size_t(image.width * image.height);
-  image.rgb.resize(3 * n);
-  image.optical_depth.resize(n);
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t p) {
-    const MarchResult seen = march.trace(camera_ray(request.camera, image.width, image.height,
-                                                    int(p) % image.width, int(p) / image.width));
-    for (std::size_t c = 0; c < 3; ++c)
-      image.rgb[3 * p + c] = float(seen.radiance_W_per_m2_sr_nm[int(c)]);
-    image.optical_depth[p] = float(seen.optical_depth);
-  });
-  return image;
-}
 
 struct Case {
   RenderRequest request;
