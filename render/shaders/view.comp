@@ -41,7 +41,7 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_, inout vec3
 #ifdef NEPHO_CELL_EXACT
   const float thickest = 0.05;
 #elif defined(NEPHO_ADAPTIVE)
-  float thickest = clamp(3.0 * sqrt(frame.tolerance), 0.05, 1.0), h = 2.0 * voxel;
+  float thickest = clamp(1.6 * sqrt(frame.tolerance), 0.05, 1.0), h = 2.0 * voxel;
 #else
   const float thickest = 1.0;
   float h = frame.step_voxels * voxel;
@@ -58,12 +58,12 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_, inout vec3
 #ifdef NEPHO_ADAPTIVE
     // Simpson against the trapezium: what the step leaves to its shape, as seen from the eye.
     float doubt = seen.transmittance * step_m * abs(k0 - 2.0 * k_mid + k1) * (1.0 / 6.0);
-    if (doubt > 2.0 * frame.tolerance && step_m > 1.01 * voxel) {
+    if (doubt > 0.6 * frame.tolerance && step_m > 1.01 * voxel) {
       step_m *= 0.5;
       k1 = k_mid;
       k_mid = total_extinction_at(t + 0.5 * step_m);
     } else {
-      h = doubt < 0.25 * frame.tolerance ? 3.0 * voxel : 2.0 * voxel;
+      h = doubt < 0.08 * frame.tolerance ? 3.0 * voxel : 2.0 * voxel;
     }
 #endif
     limit_step(t, step_m, k0, k_mid, k1, thickest);
