@@ -16,6 +16,7 @@ struct RenderVolume {
   const BrickSource* source = nullptr;  // outlives the renderer
   double time_s = 0;
   Phase phase;
+  Phase ice_phase{PhaseKind::kHenyeyGreenstein, 30e-6, 0.75};  // of channel kIceExtinction
   glm::dvec3 co_albedo{0.0};
 };
 
@@ -23,7 +24,10 @@ struct RenderRequest {
   std::vector<RenderVolume> volumes;
   Camera camera;
   Sun sun;
-  Sky sky;
+  Sky sky;  // without a planet: background and light
+  // With it: its ground and air are the background, light the clouds and stand before them; `sky`
+  // is not used. The ground's shape is that of the first volume that has a surface map there.
+  std::optional<Planet> planet;
   RenderSettings settings;
 };
 

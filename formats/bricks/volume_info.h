@@ -8,6 +8,7 @@
 
 #include "bricks/chart.h"
 #include "bricks/lattice.h"
+#include "bricks/surface_map.h"
 
 namespace nepho {
 
@@ -48,9 +49,15 @@ struct VolumeInfo {
   DataBounds bounds;
   glm::dvec3 co_albedo{0.0};  // 1 - single scattering albedo at 650, 550, 450 nm
   Phase phase;
-  std::uint64_t source_bytes = 0;        // memory that the source itself holds
-  std::vector<std::string> assumptions;  // one sentence each: what was not in the data
-  std::vector<std::string> facts;        // one sentence each: counts, ranges, what was clamped
+  // Of the part that is ice (channel kIceExtinction), where there is one. Rough aggregates.
+  Phase ice_phase{PhaseKind::kHenyeyGreenstein, 30e-6, 0.75};
+  // Weather of a planet: a picture of it wants the planet's ground and air, unless the scene says
+  // otherwise.
+  bool on_planet = false;
+  std::shared_ptr<const SurfaceMap> surface;  // null: the data have no ground
+  std::uint64_t source_bytes = 0;             // memory that the source itself holds
+  std::vector<std::string> assumptions;       // one sentence each: what was not in the data
+  std::vector<std::string> facts;             // one sentence each: counts, ranges, what was clamped
 };
 
 }  // namespace nepho

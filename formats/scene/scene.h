@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bricks/shell_chart.h"
 #include "bricks/volume_info.h"
 
 namespace nepho {
@@ -53,6 +54,31 @@ struct Sky {
   glm::dvec3 zenith_W_per_m2_sr_nm{0.0}, horizon_W_per_m2_sr_nm{0.0}, below_W_per_m2_sr_nm{0.0};
 };
 
+// Clear air around a planet, by altitude h over its ellipsoid. Wavelengths 650, 550, 450 nm.
+// Defaults: the Earth, constants of Bruneton 2017 (precomputed_atmospheric_scattering, demo.cc).
+struct Air {
+  glm::dvec3 rayleigh_per_m{6.9500e-6, 1.35580e-5, 3.02546e-5};  // at h = 0
+  double rayleigh_scale_m = 8000;
+  glm::dvec3 aerosol_extinction_per_m{4.44e-6};  // at h = 0
+  double aerosol_albedo = 0.9, aerosol_asymmetry = 0.8, aerosol_scale_m = 1200;
+  glm::dvec3 ozone_per_m{1.2027e-6, 1.8809e-6, 1.2446e-7};              // absorption at the peak
+  double ozone_low_m = 10e3, ozone_peak_m = 25e3, ozone_high_m = 40e3;  // a tent
+  double top_m = 60e3;                                                  // none above
+};
+
+// What a ray meets at the planet's surface: land that scatters evenly, water with the sun's glint.
+struct GroundLook {
+  glm::dvec3 land_albedo{0.12, 0.11, 0.07};
+  glm::dvec3 water_albedo{0.012, 0.026, 0.042};  // of the body of water, below its surface
+  double wind_m_per_s = 6;                       // roughens the water (Cox and Munk 1954)
+};
+
+struct Planet {
+  Ellipsoid body = Ellipsoid::wgs84();
+  std::optional<Air> air = Air{};
+  GroundLook ground;
+};
+
 enum class Fetch : std::uint8_t { kFilter, kTexels8 };
 enum class Light : std::uint8_t { kSingle, kOctaves };
 enum class ToneMap : std::uint8_t { kNone, kAces };
@@ -79,7 +105,10 @@ struct CameraSpec {
   std::optional<double> vertical_fov_rad;
 };
 struct SunSpec {
-  std::optional<glm::dvec3> to_sun;  // absent: 40 degrees high, behind the camera's left shoulder
+  // Both absent: on a planet the time of the first volume that has one, else 40 degrees high,
+  // behind the camera's left shoulder. Both given: an error.
+  std::optional<glm::dvec3> to_sun;
+  std::optional<std::int64_t> utc_ns;  // since 1970-01-01T00:00:00 UTC: where the sun stands then
   std::optional<glm::dvec3> irradiance_W_per_m2_nm;
 };
 
@@ -90,7 +119,9 @@ struct Scene {
   std::vector<VolumeSpec> volumes;
   CameraSpec camera;
   SunSpec sun;
-  std::optional<Sky> sky;  // absent: a clear day's
+  std::optional<Sky> sky;  // absent: a clear day's; not together with a planet
+  std::optional<Planet>
+      planet;  // absent: the Earth, where a source's volume is on_planet and no sky is given
   RenderSettings render;
   std::optional<double> exposure_ev;  // absent: from the picture
   ToneMap tone_map = ToneMap::kAces;

@@ -103,6 +103,8 @@ constexpr std::uint64_t layout_hash() noexcept {
         offsetof(VolumeInfo, lattice), offsetof(VolumeInfo, finest), offsetof(VolumeInfo, channels),
         offsetof(VolumeInfo, time_origin_ns), offsetof(VolumeInfo, times_s),
         offsetof(VolumeInfo, bounds), offsetof(VolumeInfo, co_albedo), offsetof(VolumeInfo, phase),
+        offsetof(VolumeInfo, ice_phase), offsetof(VolumeInfo, on_planet),
+        offsetof(VolumeInfo, surface), sizeof(SurfaceMap), offsetof(SurfaceMap, water),
         offsetof(VolumeInfo, source_bytes), offsetof(VolumeInfo, assumptions),
         offsetof(VolumeInfo, facts), sizeof(ChannelInfo), offsetof(ChannelInfo, name),
         offsetof(ChannelInfo, unit), offsetof(ChannelInfo, code_bits),

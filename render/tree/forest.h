@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,11 +29,18 @@ struct TreeNode {
   float unresolved_variance_per_m2 = 0;
 };
 
+// The ice part of a brick's extinction, where a volume has the channel and the brick some ice.
+struct IceCodes {
+  std::array<std::uint16_t, 729> codes;
+  float scale = 0, offset = 0;
+};
+
 struct LeafBrick {
   NodeKey key;
   std::array<std::uint16_t, 729> codes;
   float scale = 0, offset = 0;
   double max_abs_error = 0;
+  std::shared_ptr<const IceCodes> ice = {};  // null: no ice here
 };
 
 struct VolumeTree {

@@ -154,7 +154,7 @@ OpenedScene open_scene(const SourceHost& host, Scene scene) {
       opened.assumptions.push_back(info.name + ": the first time that is not empty, " +
                                    number_text(time_s) + " s");
     opened.request.volumes.push_back({opened.sources.back().get(), time_s,
-                                      volume.phase.value_or(info.phase),
+                                      volume.phase.value_or(info.phase), info.ice_phase,
                                       volume.co_albedo.value_or(info.co_albedo)});
     for (const std::string& text : info.assumptions)
       opened.assumptions.push_back(info.name + ": " + text);

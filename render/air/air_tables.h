@@ -1,0 +1,41 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace nepho {
+
+// Clear air over a planet as tables in the manner of Hillaire 2020 (doi:10.1111/cgf.14050), made on
+// the CPU in double once per picture; shaders read them as float textures, the reference as
+// doubles. The planet is a sphere of radius a here (scaled space); height = altitude over the
+// ellipsoid. mu = cosine of the zenith angle. All are rgb, x fastest, per unit of irradiance of a
+// sun outside the air; coordinates of a texel from (height, mu) and back: physics/air.glsl.
+
+struct AirTable {
+  int width = 0, height = 0;
+  std::vector<float> rgb;
+};
+
+struct AirTables {
+  AirTable transmittance;  // 256 x 64: from (mu, height) to the top; meaningless below the horizon
+  // 32 x 32, by (mu of the sun, height): radiance of second and all higher orders, even in all
+  // directions, as a source: multiply by the scattering coefficient.
+  AirTable multiple;
+  // 64 x 32 each, by (mu of the sun, height): mean radiance of air and sunlit ground, without
+  // clouds, over the directions within 45 degrees of up, between, and within 45 degrees of down
+  // (what sky_source of physics/sky.glsl takes as zenith, horizon, below).
+  AirTable sky_up, sky_side, sky_down;
+};
+
+// `ground_albedo`: of what lies under most of the view. About 0.2 CPU s.
+AirTables make_air_tables(const Air& air, double radius_m, const glm::dvec3& ground_albedo);
+
+// The same quantities without tables, by quadrature in double: for tests and the reference march.
+// Optical depth, r g b, along a straight ray in a spherical planet's air: from `height_m` with
+// zenith cosine mu, over `length_m` (or to the top of the air); relative error 1e-6.
+glm::dvec3 air_optical_depth(const Air& air, double radius_m, double height_m, double mu,
+                             double length_m);
+
+}  // namespace nepho
