@@ -74,6 +74,7 @@ void Renderer::timed(const char* name, const std::function<void()>& work) {
   work();
   glFinish();
   gl::check_errors(name);
+  if (overruns_.id()) { std::uint32_t n=0; glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT); glGetNamedBufferSubData(overruns_.id(), 0, 4, &n); fprintf(stderr, "DBG %s %u\n", name, n); }
   result_.report.passes.push_back({name, process_cpu_s() - before_s});
 }
 

@@ -29,8 +29,10 @@ void main() {
   ivec3 sample_index = 2 * ivec3(s % 5, s / 5 % 5, s / 25);
   ray_start = lit_world(tile, sample_index);
 #ifdef NEPHO_GROUND
-  // Over a planet, up is that of the place.
+  // Over a planet, up is that of the place; a little aside, as samples lie on the corners of cells and
+  // a ray along their edges would be in four of them.
   dvec3 up = planet_scaled(planet_scaled(ray_start));
+  up = up / sqrt(dot(up, up)) + dvec3(0.0011LF, 0.0007LF, 0.0013LF);
   up /= sqrt(dot(up, up));
   dvec3 east = abs(up.x) < 0.6LF ? dvec3(0.0LF, up.z, -up.y) : dvec3(-up.z, 0.0LF, up.x);
   east /= sqrt(dot(east, east));
