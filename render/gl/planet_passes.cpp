@@ -59,6 +59,7 @@ std::string PlanetPasses::defines() const {
   if (scene_.terrain) text += "#define NEPHO_TERRAIN 1\n";
   if (scene_.sun_map) text += "#define NEPHO_SUN_MAP 1\n";
   if (scene_.clouds) text += "#define NEPHO_CLOUDS 1\n";
+  if (getenv("FINE")) text += std::string("#define NEPHO_AIR_FINENESS ") + getenv("FINE") + "\n";
   return text;
 }
 

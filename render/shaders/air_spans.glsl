@@ -53,12 +53,17 @@ float lit_mean(float begin_m, float length_m) {
 float span_length(float t_m) {
   float height_m, mu, mu_sun;
   planet_place(t_m, height_m, mu, mu_sun);
-  float above = max(height_m, 0.0) + 1000.0;
+  float up_m = max(height_m, 0.0), above = (up_m + 1000.0) / (1.0 + up_m * (1.0 / 30e3));
   const float growth = 0.4;
   float steep = mu * (mu > 0.0 ? 1.0 : 1.0 + growth) / (growth * above);
   float thick = (planet.rayleigh_per_m[2] * air_exponential(height_m, planet.rayleigh_scale_m) +
                  planet.aerosol_per_m[2] * air_exponential(height_m, planet.aerosol_scale_m)) / 1.2;
   float inverse2 = steep * steep + 1.0 / (2.0 * growth * planet_ray.radius_m * above) + thick * thick;
+  // Under a sun below the horizon, also the height at which its beam passed over the ground.
+  float level = sqrt(max(1.0 - mu_sun * mu_sun, 1e-4));
+  float passed_m = height_m - planet_ray.radius_m * mu_sun * mu_sun / (1.0 + level);
+  float edge = (mu - mu_sun * planet_ray.sun_along) / (level * growth * (abs(passed_m) + 5000.0));
+  inverse2 += clamp(-50.0 * mu_sun, 0.0, 1.0) * edge * edge;
 #ifdef NEPHO_SUN_MAP
   if (height_m < planet.cloud_top_m) {
     float near = 1.0 / (0.25 * t_m + 400.0);
