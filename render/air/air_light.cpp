@@ -20,6 +20,9 @@ namespace {
 using std::numbers::pi;
 
 constexpr int kSuns = 64, kHeights = 32;
+// Texels of the tables between two suns: light falls off by half an e-fold from one to the next in
+// twilight, and shaders interpolate linearly.
+constexpr int kBetween = 4;
 constexpr int kDepthWidth = 256, kDepthHeight = 64;
 constexpr int kSteepNodes = 3, kSideNodes = 6, kAzimuths = 6, kPanelNodes = 4;
 constexpr double kSteep = std::numbers::sqrt2 / 2;  // 45 degrees
@@ -37,6 +40,7 @@ struct Bundle {  // rays of one zenith angle from one height
   std::vector<Sample> samples;
   double ground_m = -1;    // along the ray; < 0: none
   glm::dvec3 ground{0.0};  // transmittance from there
+  glm::dvec3 space{0.0};   // transmittance to the sky beyond the air
 };
 struct Field {  // of one order, at one height, for one sun
   glm::dvec3 mean{0.0}, p2{0.0}, irradiance{0.0};
@@ -72,10 +76,10 @@ class Solver {
   void run() {
     make_depth();
     tbb::parallel_for(0, kHeights, [&](int row) { make_bundles(row); });
-    const Fields first = order(&Solver::sunlit, &Solver::sunlit_ground);
+    const Fields first = order(&Solver::sunlit, &Solver::sunlit_ground, f64::night_sky);
     fields_ = first;
     set_light();
-    const Fields second = order(&Solver::relit, &Solver::relit_ground);
+    const Fields second = order(&Solver::relit, &Solver::relit_ground, 0);
     for (std::size_t f = 0; f < fields_.size(); ++f)
       fields_[f] = closed(first[f], second[f], kept_[f / kSuns]);
     set_light();
@@ -134,6 +138,8 @@ class Solver {
       end_m = std::max(path.ground_m(), path.start_m());
       bundle.ground_m = end_m - path.start_m();
       bundle.ground = glm::exp(-air_optical_depth(air_, radius_m_, height_m, mu, bundle.ground_m));
+    } else {
+      bundle.space = glm::exp(-air_optical_depth(air_, radius_m_, height_m, mu, 1e30));
     }
     const std::vector<double> cuts = path.cuts(path.start_m(), end_m, cuts_m_);
     for (std::size_t p = 1; p < cuts.size(); ++p)
@@ -186,16 +192,16 @@ class Solver {
     return albedo_ / pi * (a + (place - double(i)) * (b - a));
   }
 
-  Fields order(SampleLight light, GroundLight ground) const {
+  Fields order(SampleLight light, GroundLight ground, double night) const {
     Fields fields(kSuns * kHeights);
     tbb::parallel_for(0, kHeights, [&](int row) {
       for (int sun = 0; sun < kSuns; ++sun)
-        fields[std::size_t(row * kSuns + sun)] = field(row, sun, light, ground);
+        fields[std::size_t(row * kSuns + sun)] = field(row, sun, light, ground, night);
     });
     return fields;
   }
 
-  Field field(int row, int sun, SampleLight light, GroundLight ground) const {
+  Field field(int row, int sun, SampleLight light, GroundLight ground, double night) const {
     double height_m = 0, mu_sun = 0;
     f64::air_light_place(air_.top_m, sun / (kSuns - 1.0), row / (kHeights - 1.0), height_m, mu_sun);
     const double r_m = radius_m_ + height_m;
@@ -204,7 +210,7 @@ class Solver {
     std::array<double, kBands> weights{};
     for (const Bundle& bundle : bundles_[std::size_t(row)]) {
       const double sine = std::sqrt((1 - bundle.mu) * (1 + bundle.mu));
-      glm::dvec3 radiance{0.0};
+      glm::dvec3 radiance = kAzimuths * night * bundle.space;
       for (int a = 0; a < kAzimuths; ++a) {
         const double cosine =
             bundle.mu * mu_sun + sine * sun_sine * std::cos(pi * (a + 0.5) / kAzimuths);
@@ -239,23 +245,47 @@ class Solver {
     return all;
   }
 
+  // Between suns a cubic of the logarithm (Catmull-Rom).
   template <class Value>
-  void fill(AirTable& table, Value&& value) const {
-    table = {kSuns, kHeights, {}};
-    for (const Field& field : fields_) {
-      const glm::dvec3 rgb = value(field);
-      for (int c = 0; c < 3; ++c) table.rgb.push_back(float(rgb[c]));
-    }
+  AirTable finer(Value&& value) const {
+    AirTable table{kBetween * (kSuns - 1) + 1, kHeights, {}};
+    for (int row = 0; row < kHeights; ++row)
+      for (int i = 0; i < table.width; ++i)
+        for (int c = 0; c < 3; ++c) {
+          const auto at = [&](int sun) {
+            return value(fields_[std::size_t(row * kSuns + std::clamp(sun, 0, kSuns - 1))])[c];
+          };
+          table.rgb.push_back(float(cubic(at, i)));
+        }
+    return table;
+  }
+  template <class At>
+  static double cubic(At&& at, int texel) {
+    const int sun = texel / kBetween;
+    const double f = double(texel % kBetween) / kBetween;
+    const double a = at(sun - 1), b = at(sun), c = at(sun + 1), d = at(sun + 2);
+    return b + 0.5 * f * (c - a + f * (2 * a - 5 * b + 4 * c - d + f * (3 * (b - c) + d - a)));
+  }
+  template <class Value>
+  AirTable finer_light(Value&& value) const {
+    AirTable table =
+        finer([&](const Field& f) { return glm::log(glm::max(value(f), glm::dvec3{1e-30})); });
+    for (float& v : table.rgb) v = std::exp(v);
+    return table;
   }
   void set_light() {
-    fill(tables_.multiple, [](const Field& f) { return f.mean; });
-    fill(tables_.multiple_p2, [](const Field& f) { return f.p2; });
+    tables_.multiple = finer_light([](const Field& f) { return f.mean; });
+    tables_.multiple_p2 =
+        finer([](const Field& f) { return f.p2 / glm::max(f.mean, glm::dvec3{1e-30}); });
+    for (std::size_t v = 0; v < tables_.multiple.rgb.size(); ++v)
+      tables_.multiple_p2.rgb[v] *= tables_.multiple.rgb[v];
   }
   void set_sky() {
-    fill(tables_.sky_up, [](const Field& f) { return f.band[kUp]; });
-    fill(tables_.sky_low, [](const Field& f) { return f.band[kLow]; });
-    fill(tables_.sky_side, [](const Field& f) { return 0.5 * (f.band[kLow] + f.band[kUnder]); });
-    fill(tables_.sky_down, [](const Field& f) { return f.band[kDown]; });
+    const auto side = [](const Field& f) { return 0.5 * (f.band[kLow] + f.band[kUnder]); };
+    tables_.sky_up = finer_light([](const Field& f) { return f.band[kUp]; });
+    tables_.sky_low = finer_light([](const Field& f) { return f.band[kLow]; });
+    tables_.sky_side = finer_light(side);
+    tables_.sky_down = finer_light([](const Field& f) { return f.band[kDown]; });
   }
 
   const Air& air_;

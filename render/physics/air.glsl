@@ -52,27 +52,25 @@ void air_depth_place(Length radius, Length top, Number x, Number y, OUT(Length) 
   }
 }
 
-// Multiple scattering and sky light: x by the sun's mu, dense at the horizon, from 30 degrees below
-// it (darker than anything that is drawn) to the zenith; y dense near the ground. x, y in [0, 1].
-const Number air_lowest_sun = Number(-0.5);
+// Multiple scattering and sky light: x by the sun's mu, even below the horizon, down to where all is
+// darker than the night sky, dense above it; y dense near the ground. x, y in [0, 1].
+const Number air_lowest_sun = Number(-0.45);
 const Number air_sun_bend = Number(0.2);
-Number air_bent_sun(Number mu_sun) {
-  return mu_sun / (abs(mu_sun) + air_sun_bend);
-}
 void air_light_coordinates(Length top, Length height, Number mu_sun, OUT(Number) x,
                            OUT(Number) y) {
-  Number low = air_bent_sun(air_lowest_sun);
-  Number high = air_bent_sun(Number(1.0));
-  Number bent = air_bent_sun(min(max(mu_sun, air_lowest_sun), Number(1.0)));
+  Number mu = min(max(mu_sun, air_lowest_sun), Number(1.0));
+  Number low = air_lowest_sun / air_sun_bend;
+  Number high = Number(1.0) / (Number(1.0) + air_sun_bend);
+  Number bent = mu / (max(mu, Number(0.0)) + air_sun_bend);
   x = (bent - low) / (high - low);
   y = sqrt(min(max(height / top, Number(0.0)), Number(1.0)));
 }
 void air_light_place(Length top, Number x, Number y, OUT(Length) height, OUT(Number) mu_sun) {
-  Number low = air_bent_sun(air_lowest_sun);
-  Number high = air_bent_sun(Number(1.0));
+  Number low = air_lowest_sun / air_sun_bend;
+  Number high = Number(1.0) / (Number(1.0) + air_sun_bend);
   Number bent = low + x * (high - low);
   height = top * y * y;
-  mu_sun = air_sun_bend * bent / (Number(1.0) - abs(bent));
+  mu_sun = air_sun_bend * bent / (Number(1.0) - max(bent, Number(0.0)));
 }
 
 // Texture coordinate of x in [0, 1] in a table of n texels, whose ends are texels' centres.
@@ -92,3 +90,8 @@ Emission air_emission(InverseLength rayleigh, InverseLength aerosol, Irradiance 
   return rayleigh * (sun * rayleigh_part + multiple + p2 * multiple_p2) +
          aerosol * (sun * aerosol_part + multiple);
 }
+
+// Airglow and stars of a moonless night, 22 mag per square second of arc = 1.7e-4 cd m-2 (Patat 2008,
+// doi:10.1051/0004-6361:20079279), over the sun's 1.28e5 lx: radiance from beyond the air per unit of
+// the sun's irradiance. What is left of light at the end of twilight.
+const InverseSolidAngle night_sky = InverseSolidAngle(1.3e-9);
