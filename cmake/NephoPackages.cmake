@@ -6,6 +6,7 @@ function(nepho_package_option name what)
 endfunction()
 nepho_package_option(OPENVDB "OpenVDB files (.vdb)")
 nepho_package_option(OIIO "PNG, EXR and HDR pictures through OpenImageIO")
+nepho_package_option(NETCDF "NetCDF forecasts (.nc)")
 
 # nepho_package_missing(OPENVDB "text"): says so, or stops.
 function(nepho_package_missing name what)

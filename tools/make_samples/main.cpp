@@ -10,6 +10,7 @@
 #include "cumulus.h"
 #include "plume.h"
 #include "twins.h"
+#include "wrf_forecast.h"
 
 namespace {
 
@@ -102,6 +103,11 @@ void write_samples(const Options& options) {
   }
   fs::create_directories(folder);
   fs::remove(note);
+  if (options.size == "small") {
+    write_wrf(NcWriter(module_folders()), folder / "forecast.nc", {});
+    report(folder / "forecast.nc", seconds());
+    return;
+  }
   const VdbWriter writer(module_folders());
   const double scale = options.size == "small" ? 0.5 : options.size == "large" ? 2 : 1;
   write_cumulus(folder, scale, writer);
