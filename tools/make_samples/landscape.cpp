@@ -39,13 +39,13 @@ Landscape landscape(double x_m, double y_m) {
   const double s_m = x_m + 38e3 - 0.12 * y_m + 11e3 * gradient_noise(p / 75e3, kSeed + 9);
   const double shore = smooth_step(0, 9e3, inland_m);
   const double hills_m = 620 * bump(s_m, 21e3, 11e3);
-  const double range_m = 2450 * bump(s_m, 93e3, 23e3);
+  const double range_m = 1950 * bump(s_m, 93e3, 24e3);
   const double plateau_m = 900 * smooth_step(62e3, 118e3, s_m);
   const glm::dvec3 warp = {3e3 * gradient_noise(p / 17e3, kSeed + 20),
                            3e3 * gradient_noise(p / 17e3, kSeed + 21), 0};
   const double ridge = ridges((p + warp) / glm::dvec3(23e3, 31e3, 1), 4);
   const double envelope_m = shore * (60 + 0.45 * (hills_m + range_m) + plateau_m);
-  const double rough_m = (hills_m + range_m + 0.18 * plateau_m) * (ridge - 0.28);
+  const double rough_m = (hills_m + range_m + 0.3 * plateau_m) * (ridge - 0.28);
   const double height_m = shore * (55 + 0.45 * (hills_m + range_m) + plateau_m + 1.05 * rough_m);
   return {inland_m, std::max(2.0 + 10 * shore, height_m), envelope_m};
 }

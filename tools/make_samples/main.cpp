@@ -8,6 +8,8 @@
 
 #include "core/error.h"
 #include "cumulus.h"
+#include "global_forecast.h"
+#include "les_field.h"
 #include "plume.h"
 #include "twins.h"
 #include "wrf_forecast.h"
@@ -106,6 +108,10 @@ void write_samples(const Options& options) {
   if (options.size == "small") {
     write_wrf(NcWriter(module_folders()), folder / "forecast.nc", {});
     report(folder / "forecast.nc", seconds());
+    write_les(NcWriter(module_folders()), folder / "les.nc", {});
+    report(folder / "les.nc", seconds());
+    write_global(NcWriter(module_folders()), folder / "globe.nc", {});
+    report(folder / "globe.nc", seconds());
     return;
   }
   const VdbWriter writer(module_folders());

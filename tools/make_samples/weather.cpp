@@ -67,7 +67,7 @@ Weather::Column Weather::column(double x_m, double y_m) const {
       kSeed + 3);
   const double patch = 0.75 * noise(u, v, 52e3, 4) + 0.35 * noise(u, v, 21e3, 5);
   const double shore = smooth_step(5e3 + 7e3 * noise(x_m, y_m, 18e3, 6), -5e3, s_m);
-  const double thick_m = 330 + 210 * (0.55 - cell * cell) + 150 * patch + 55 * noise(u, v, 5e3, 7);
+  const double thick_m = 270 + 380 * (0.52 - cell * cell) + 230 * patch + 60 * noise(u, v, 5e3, 7);
   c.deck_base_m = 420 + 25 * noise(u, v, 30e3, 8);
   c.deck_top_m = c.deck_base_m + thick_m * shore - 120 * (1 - shore);
 
@@ -76,7 +76,7 @@ Weather::Column Weather::column(double x_m, double y_m) const {
   const double street = noise(a / 2.3, b, 9e3, 10);
   const double cells = 0.55 * street + 0.85 * noise(a, b, 6.3e3, 11) + 0.5 * noise(a, b, 3.9e3, 12);
   const double heated = smooth_step(7e3, 20e3, s_m) * smooth_step(100e3, 74e3, s_m);
-  const double strength = cells - 0.42 - 0.9 * (1 - heated) + 0.25 * noise(a, b, 40e3, 13);
+  const double strength = cells - 0.46 - 0.9 * (1 - heated) + 0.55 * noise(a, b, 27e3, 13);
   c.cumulus = smooth_step(0.0, 0.30, strength);
   c.cumulus_base_m = 1500 + 0.30 * std::max(0.0, c.ground.envelope_m - 500);
   const double turret = 0.75 + 0.45 * noise(a, b, 4.3e3, 14);
@@ -141,10 +141,10 @@ void Weather::add_layers(const Column& c, double h, Hydrometeors& water) const {
     // narrower towards the top
     water.cloud += adiabatic(h, c.cumulus_base_m, c.cumulus_top_m, 150, 0.42) * c.cumulus;
   if (c.cap > 0) water.cloud += adiabatic(h, 1950, c.cap_top_m, 130, 0.32) * c.cap;
-  if (c.wave > 0.55) {
-    const double lens = smooth_step(0.55, 1.25, c.wave), middle_m = 5300 + 180 * lens;
+  if (c.wave > 0.4) {
+    const double lens = smooth_step(0.4, 1.2, c.wave), middle_m = 5300 + 180 * lens;
     const double half_m = 120 + 260 * lens, off = (h - middle_m) / half_m;
-    if (off * off < 1) water.cloud += 0.16e-3 * lens * (1 - off * off);
+    if (off * off < 1) water.cloud += 0.2e-3 * lens * (1 - off * off);
   }
   if (c.cirrus > 0 && h > 8600 && h < 11200) {
     // fall streaks: the trails hang below and behind
@@ -205,7 +205,7 @@ void Weather::add_anvil(const Tower& tower, const Column& c, double h, Hydromete
   // Spreads downwind like a plume, with a blunt upwind edge and fibres at its end.
   const double fringe =
       noise(along_m / 3.5, across_m, 5.2e3, 40) + 0.6 * noise(along_m, across_m, 4e3, 41);
-  const double half_m = 1.35 * tower.radius_m + 0.24 * std::max(along_m, 0.0);
+  const double half_m = 1.6 * tower.radius_m + 0.30 * std::max(along_m, 0.0);
   const double upwind_m = along_m + 1.75 * tower.radius_m;
   const double side = smooth_step(1.12, 0.62, std::abs(across_m) / half_m + 0.20 * fringe);
   const double length = smooth_step(1.05, 0.45, reach + 0.20 * fringe) *
@@ -218,7 +218,7 @@ void Weather::add_anvil(const Tower& tower, const Column& c, double h, Hydromete
   const double depth_m = (350 + 1900 * there * smooth_step(1.1, -0.1, reach)) * pouches;
   const double inside = smooth_step(top_m + 200, top_m - 200, h) *
                         smooth_step(top_m - depth_m - 350, top_m - 0.45 * depth_m, h);
-  const double amount = 0.42e-3 * inside * there * std::exp(-1.5 * std::max(reach, 0.0));
+  const double amount = 0.6e-3 * inside * there * std::exp(-1.1 * std::max(reach, 0.0));
   water.ice += 0.6 * amount;
   water.snow += 0.4 * amount;
 }

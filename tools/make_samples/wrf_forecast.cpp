@@ -296,20 +296,18 @@ void Columns::write_level(std::size_t k, const Put& put) {
     tbb::parallel_for(std::size_t(0), size(), [&](std::size_t at) { out[at] = value(at); });
     put(name, out);
   };
-  put_each("PHB", [&](std::size_t at) { return rounded(base_geopotential_[at], 1); });
+  put_each("PHB", [&](std::size_t at) { return rounded(base_geopotential_[at], 4); });
   put_each("PH", [&](std::size_t at) {
-    return rounded(geopotential_[at], 1) - rounded(base_geopotential_[at], 1);
+    return rounded(geopotential_[at], 4) - rounded(base_geopotential_[at], 4);
   });
   if (k == shape_.nz) return;
   tbb::parallel_for(std::size_t(0), size(), [&](std::size_t cell) { raise(cell, k); });
   put_each("P", [&](std::size_t at) {
-    return rounded(pressure_[at] + base_pressure_[at], 1) - rounded(base_pressure_[at], 1);
+    return rounded(pressure_[at] + base_pressure_[at], 4) - rounded(base_pressure_[at], 4);
   });
-  put_each("PB", [&](std::size_t at) { return rounded(base_pressure_[at], 1); });
-  put_each("T", [&](std::size_t at) { return rounded(theta_[at], 1.0 / 64); });
-  put_each("QVAPOR", [&](std::size_t at) {
-    return vapour_[at] > 1e-3 ? rounded(vapour_[at], 1.0 / 131072) : kept_bits(vapour_[at], 7);
-  });
+  put_each("PB", [&](std::size_t at) { return rounded(base_pressure_[at], 4); });
+  put_each("T", [&](std::size_t at) { return rounded(theta_[at], 1.0 / 32); });
+  put_each("QVAPOR", [&](std::size_t at) { return kept_bits(vapour_[at], 6); });
   const auto put_water = [&](const char* name, double Hydrometeors::*part) {
     put_each(name, [&](std::size_t at) {
       const double q = water_[at].*part;
@@ -328,7 +326,7 @@ void Columns::write_winds(const Put& put) {
     const std::size_t at = std::min(j, shape_.ny - 1) * shape_.nx + std::min(i, shape_.nx - 1);
     const double over_m = middle_m_[at] - columns_[at].ground.height_m;
     const double drag = 0.4 + 0.6 * std::min(over_m / 800, 1.0);
-    return kept_bits(drag * direction * Weather::wind_along_m_per_s(middle_m_[at]), 7);
+    return kept_bits(drag * direction * Weather::wind_along_m_per_s(middle_m_[at]), 5);
   };
   std::vector<double> u((shape_.nx + 1) * shape_.ny), v(shape_.nx * (shape_.ny + 1));
   for (std::size_t at = 0; at < u.size(); ++at)
