@@ -5,8 +5,8 @@ function(nepho_package_option name what)
   set_property(CACHE NEPHO_WITH_${name} PROPERTY STRINGS AUTO ON OFF)
 endfunction()
 nepho_package_option(OPENVDB "OpenVDB files (.vdb)")
+nepho_package_option(NETCDF "Forecasts in NetCDF files (.nc)")
 nepho_package_option(OIIO "PNG, EXR and HDR pictures through OpenImageIO")
-nepho_package_option(NETCDF "NetCDF forecasts (.nc)")
 
 # nepho_package_missing(OPENVDB "text"): says so, or stops.
 function(nepho_package_missing name what)

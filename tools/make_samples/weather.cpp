@@ -27,6 +27,12 @@ double frozen(double temperature_K) {
   return smooth_step(262, 238, temperature_K);
 }
 
+// Towers come again along the coast, so that larger domains have them too.
+constexpr double kPeriod_m = 190e3;
+double repeated(double y_m) {
+  return y_m - kPeriod_m * std::round(y_m / kPeriod_m);
+}
+
 }  // namespace
 
 // A convective tower over (x, y): its radius and top, and how long its anvil is (0: none yet).
@@ -87,7 +93,8 @@ Weather::Column Weather::column(double x_m, double y_m) const {
   const double windward = smooth_step(66e3, 80e3, s_m) * smooth_step(112e3, 100e3, s_m);
   c.cap = windward * smooth_step(-0.35, 0.35, noise(a / 1.5, b, 17e3, 16) + 0.2);
   c.cap_top_m = 1900 + 0.45 * crest + 600 * c.cap * (0.6 + 0.5 * noise(a, b, 5.5e3, 17));
-  c.wave = smooth_step(104e3, 112e3, s_m) * std::cos(6.283185307 * (s_m - 116e3) / 15e3) +
+  c.wave = smooth_step(104e3, 112e3, s_m) * std::cos(6.283185307 * (s_m - 116e3) / 15e3) *
+               smooth_step(190e3, 120e3, s_m) +
            0.5 * noise(x_m, y_m, 28e3, 18);
 
   const double ci_a = c.along_m - 24 * time_s_, bend_m = 9e3 * noise(ci_a, b, 60e3, 20);
@@ -158,7 +165,7 @@ void Weather::add_tower(const Tower& tower, const Column& c, double h, Hydromete
   const double reach_m = 2.2 * tower.radius_m + 3e3;
   const double lean_m = 0.16 * std::clamp(h - base_m, -1500.0, 8e3);
   const double dx = c.x_m - tower.x_m - 5 * time_s_ - lean_m * std::cos(kWindTurn_rad);
-  const double dy = c.y_m - tower.y_m - lean_m * std::sin(kWindTurn_rad);
+  const double dy = repeated(c.y_m - tower.y_m) - lean_m * std::sin(kWindTurn_rad);
   if (std::abs(dx) > reach_m || std::abs(dy) > reach_m || rise > 1.25) return;
   const double away_m = std::hypot(dx, dy), temperature = temperature_K(c, h);
 
@@ -197,7 +204,7 @@ void Weather::add_tower(const Tower& tower, const Column& c, double h, Hydromete
 void Weather::add_anvil(const Tower& tower, const Column& c, double h, Hydrometeors& water) const {
   if (h < tower.top_m - 4200 || h > tower.top_m + 300) return;
   const double lean_m = 0.16 * 8e3, dx = c.x_m - tower.x_m - 5 * time_s_ - lean_m;
-  const double dy = c.y_m - tower.y_m - 0.35 * lean_m;
+  const double dy = repeated(c.y_m - tower.y_m) - 0.35 * lean_m;
   const double turn_x = std::cos(kWindTurn_rad), turn_y = std::sin(kWindTurn_rad);
   const double along_m = dx * turn_x + dy * turn_y, across_m = -dx * turn_y + dy * turn_x;
   const double reach = along_m / tower.anvil_m;

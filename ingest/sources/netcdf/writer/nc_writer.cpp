@@ -79,7 +79,8 @@ void define_variable(NcOpenFile& file, const NcFileSpec& spec, const NcVariable&
     for (std::size_t at = v.rank - 2; at < v.rank; ++at)
       chunk[at] = std::max<std::size_t>(kept.shape[at], 1);
     check(nc_def_var_chunking(file.id, id, NC_CHUNKED, chunk.data()), "chunks", v.name);
-    check(nc_set_var_chunk_cache(file.id, id, 0, 0, 1), "cache", v.name);
+    // and no cache of many, which is 16 MiB for each variable
+    check(nc_set_var_chunk_cache(file.id, id, 4096, 1, 1), "cache", v.name);
     if (spec.deflate > 0)
       check(nc_def_var_deflate(file.id, id, 1, 1, spec.deflate), "deflate", v.name);
   }
