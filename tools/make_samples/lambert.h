@@ -33,12 +33,20 @@ class Lambert {
   // From the grid's axes to east and north: the angle by which the grid is turned (rad).
   double turn_rad(double lon_deg) const { return cone_ * (lon0_rad_ - radians(lon_deg)); }
 
+#ifdef NEPHO_MUTANT_ANOTHER_SPHERE
+  static constexpr double kSphere_m = 6378137;
+#else
   static constexpr double kSphere_m = 6370e3;
+#endif
 
  private:
   static constexpr double kPi = 3.14159265358979323846;
-  static double radians(double deg) { return deg * kPi / 180; }
-  static double half_tan(double lat_rad) { return std::tan(kPi / 4 + lat_rad / 2); }
+  static double radians(double deg) {
+    return deg * kPi / 180;
+  }
+  static double half_tan(double lat_rad) {
+    return std::tan(kPi / 4 + lat_rad / 2);
+  }
   double lon0_rad_, cone_, scale_m_, rho0_m_;
 };
 

@@ -179,6 +179,7 @@ void make_profiles(TinyFile& file) {  // time x height, as of one station
     file.layout.field(name).axes = {};
     file.values.at(name).resize(1);
   }
+  file.layout.axes.resize(2);
 }
 
 void make_triangles(TinyFile& file) {  // ICON's own grid: cells in a row

@@ -276,7 +276,11 @@ void Columns::raise(std::size_t cell, std::size_t k) {
     const double vapour_Pa = (cloudy * saturation_Pa(temperature, ice) +
                               (1 - cloudy) * humidity * saturation_Pa(temperature, 0));
     vapour_[cell] = 0.622 * vapour_Pa / (p - vapour_Pa);
+#ifdef NEPHO_MUTANT_WITHOUT_VAPOUR
+    const double virtual_K = temperature;
+#else
     const double virtual_K = temperature * (1 + 0.608 * vapour_[cell]);
+#endif
     thick_m = step * (surface_Pa_[cell] - kTop_Pa) / p * kGasDry * virtual_K / kGravity;
   }
   middle_m_[cell] = foot_m + 0.5 * thick_m;
