@@ -215,7 +215,7 @@ TEST_P(Cases, ColumnsAreTheFieldUnderTheSameKernel) {
   std::ranges::stable_partition(list,
                                 [&](Column c) { return r.chart().names(c, r.cells()).size() > 1; });
   double gap = 0, square = 0;
-  list.resize(std::min<std::size_t>(list.size(), 120));
+  list.resize(std::min<std::size_t>(list.size(), 80));
   for (std::size_t n = 0; n < list.size(); ++n) {
     const double truth = looked_up_depth(r, search, depth, list[n]);
     const double off = r.column_depth(list[n]) - truth;
@@ -240,13 +240,13 @@ TEST_P(Cases, SamplesAreTheFieldUnderTheSameKernel) {
   std::ranges::shuffle(list, random);
   double gap = 0, square = 0;
   std::size_t compared = 0;
-  for (std::size_t at = 0; at < list.size() && compared < 40; ++at) {
+  for (std::size_t at = 0; at < list.size() && compared < 25; ++at) {
     const auto k = std::uint32_t(1 + random() % (n[2] - 1));
     const double own = r.sample(list[at], k);
     if (own == 0 && compared % 8) continue;
     ++compared;
     double sum = 0, total = 0;
-    constexpr int kAcross = 10, kUp = 12;
+    constexpr int kAcross = 8, kUp = 24;
     for (const Column& name : r.chart().names(list[at], n))
       for (int c = -kUp; c < kUp; ++c)
         for (int b = -kAcross; b < kAcross; ++b)
@@ -271,7 +271,7 @@ TEST_P(Cases, SamplesAreTheFieldUnderTheSameKernel) {
   }
   const double rms = std::sqrt(gap / square);
   report_accuracy("netcdf", "samples against the field under the same hats, rms", rms, 2e-2, "1");
-  EXPECT_GE(compared, 20u);
+  EXPECT_GE(compared, 15u);
   EXPECT_LE(rms, 2e-2);
 }
 

@@ -104,16 +104,32 @@ GridSearch::Found GridSearch::polish(const glm::dvec3& wanted, glm::dvec2 at) co
   return {at, off < 1e-6 ? 0 : off};
 }
 
+// At a pole x has no slope, and a cell's middle may be the pole: from the nearest of points all around
+// it instead.
+GridSearch::Found GridSearch::near_pole(const glm::dvec3& wanted, Found found) const {
+  if (found.off_cells == 0 || !grid_->around()) return found;
+  constexpr int kAround = 36;
+  Seed nearest{found.at, direction(found.at)};
+  for (const double y : {found.at.y - 0.2, found.at.y + 0.2, found.at.y - 0.6, found.at.y + 0.6})
+    for (int n = 0; n < kAround; ++n) {
+      const glm::dvec2 at = inside({grid_->nx() * (n + 0.5) / kAround, y});
+      const Seed seed{at, direction(at)};
+      if (glm::dot(seed.direction, wanted) > glm::dot(nearest.direction, wanted)) nearest = seed;
+    }
+  const Found again = polish(wanted, nearest.at);
+  return again.off_cells < found.off_cells ? again : found;
+}
+
 GridSearch::Found GridSearch::find(glm::dvec2 lat_lon_deg) const {
   const glm::dvec3 wanted = unit_vector(lat_lon_deg);
   const auto nearest = std::ranges::max_element(
       seeds_, {}, [&](const Seed& seed) { return glm::dot(seed.direction, wanted); });
-  return polish(wanted, walk(wanted, nearest->at, step_));
+  return near_pole(wanted, polish(wanted, walk(wanted, nearest->at, step_)));
 }
 
 GridSearch::Found GridSearch::find(glm::dvec2 lat_lon_deg, glm::dvec2 start) const {
   const glm::dvec3 wanted = unit_vector(lat_lon_deg);
-  return polish(wanted, walk(wanted, inside(start), 1));
+  return near_pole(wanted, polish(wanted, walk(wanted, inside(start), 1)));
 }
 
 }  // namespace nepho::netcdf

@@ -31,6 +31,7 @@ class GridSearch {
   glm::dvec2 inside(glm::dvec2 at) const;
   glm::dvec2 walk(const glm::dvec3& wanted, glm::dvec2 start, int step) const;
   Found polish(const glm::dvec3& wanted, glm::dvec2 at) const;
+  Found near_pole(const glm::dvec3& wanted, Found found) const;
 
   struct Seed {
     glm::dvec2 at;
