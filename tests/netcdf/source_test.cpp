@@ -235,6 +235,30 @@ TEST(NetcdfSource, GroundLiesWhereTheFileHasIt) {
   }
 }
 
+// A nest that moves: clouds and ground are where it is at each time.
+TEST(NetcdfSource, MovingNestLeavesOneGround) {
+  auto forecast = synthetic_forecast("mercator");
+  forecast->times = {0, 3600};
+  for (const double lon_deg : {-88.0, -80.0})
+    forecast->moving.push_back(
+        std::make_shared<MercatorGrid>(48, 48, glm::dvec2(24, lon_deg), 0.09));
+  forecast->ground_m = [](glm::dvec2 p) { return 100 + 10 * (p.y + 90); };
+  forecast->extinction_per_m = [](glm::dvec2, double z, double) { return z > 3000 ? 1e-3 : 0.0; };
+  const auto source = made_source(forecast);
+  const auto& chart = static_cast<const ShellChart&>(*source->info().chart);
+  for (std::size_t time = 0; time < 2; ++time)
+    for (std::size_t place = 0; place < 2; ++place) {
+      const glm::dvec2 deg = forecast->middle(24, 24, place);
+      const glm::dvec3 p = ecef_m(Ellipsoid::wgs84(), {deg.x, deg.y, 5000});
+      double beta = -1;
+      source->point_extinction_per_m(p, forecast->times[time], beta);
+      EXPECT_NEAR(beta, time == place ? 1e-3 : 0, 1e-9);
+      const SurfaceMap& map = *source->info().surface;
+      const glm::dvec3 u = glm::normalize(chart.to_scaled(p));
+      EXPECT_NEAR(map_at(map, map.height_m, u), forecast->ground_m(deg), 1);
+    }
+}
+
 TEST(NetcdfSource, SaysWhatItIs) {
   auto forecast = synthetic_forecast("mercator");
   forecast->extinction_per_m = [](glm::dvec2, double z, double) { return z > 8000 ? 0.01 : 0.0; };

@@ -83,6 +83,7 @@ class RotatedGrid final : public netcdf::HorizontalGrid {
 
 struct SyntheticForecast final : netcdf::Forecast {
   std::shared_ptr<const netcdf::HorizontalGrid> cells;
+  std::vector<std::shared_ptr<const netcdf::HorizontalGrid>> moving;  // one a time; empty: cells
   int nz = 0;
   // Height (m) of the ground, and of interface k of nz above it, at latitude and longitude (deg).
   std::function<double(glm::dvec2)> ground_m = [](glm::dvec2) { return 0.0; };
@@ -95,8 +96,12 @@ struct SyntheticForecast final : netcdf::Forecast {
   std::int64_t time_origin_ns() const override { return 0; }
   const std::vector<double>& times_s() const override { return times; }
   bool has_ice() const override { return bool(ice_per_m); }
-  std::shared_ptr<const netcdf::HorizontalGrid> grid(std::size_t) const override { return cells; }
-  glm::dvec2 middle(int i, int j) const { return cells->lat_lon_deg(i + 0.5, j + 0.5); }
+  std::shared_ptr<const netcdf::HorizontalGrid> grid(std::size_t time) const override {
+    return moving.empty() ? cells : moving[time];
+  }
+  glm::dvec2 middle(int i, int j, std::size_t time = 0) const {
+    return grid(time)->lat_lon_deg(i + 0.5, j + 0.5);
+  }
   double interface_m(double ground, int k) const {
     const double top_m = level_m(1);  // flat, as terrain-following levels are
     return ground + level_m(double(k) / nz) * (1 - ground / top_m);
@@ -106,24 +111,24 @@ struct SyntheticForecast final : netcdf::Forecast {
     c.nx = cells->nx(), c.ny = cells->ny(), c.nz = nz;
     for (int j = 0; j < c.ny; ++j)
       for (int i = 0; i < c.nx; ++i) {
-        const double ground = ground_m(middle(i, j));
+        const double ground = ground_m(middle(i, j, time));
         for (int k = 0; k <= nz; ++k) c.interface_m.push_back(float(interface_m(ground, k)));
         for (int k = 0; k < nz; ++k) {
           const double z = (interface_m(ground, k) + interface_m(ground, k + 1)) / 2;
-          const auto ice = float(ice_per_m ? ice_per_m(middle(i, j), z, times[time]) : 0);
+          const auto ice = float(ice_per_m ? ice_per_m(middle(i, j, time), z, times[time]) : 0);
           c.extinction_per_m.push_back(
-              std::max(ice, float(extinction_per_m(middle(i, j), z, times[time]))));
+              std::max(ice, float(extinction_per_m(middle(i, j, time), z, times[time]))));
           if (ice_per_m) c.ice_extinction_per_m.push_back(ice);
         }
       }
     return c;
   }
-  netcdf::ForecastGround ground(std::size_t) const override {
+  netcdf::ForecastGround ground(std::size_t time) const override {
     netcdf::ForecastGround g;
     for (int j = 0; j < cells->ny(); ++j)
       for (int i = 0; i < cells->nx(); ++i) {
-        g.height_m.push_back(float(ground_m(middle(i, j))));
-        g.water.push_back(ground_m(middle(i, j)) <= 0 ? 1.0f : 0.0f);
+        g.height_m.push_back(float(ground_m(middle(i, j, time))));
+        g.water.push_back(ground_m(middle(i, j, time)) <= 0 ? 1.0f : 0.0f);
       }
     return g;
   }

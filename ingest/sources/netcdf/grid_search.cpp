@@ -104,17 +104,21 @@ GridSearch::Found GridSearch::polish(const glm::dvec3& wanted, glm::dvec2 at) co
   return {at, off < 1e-6 ? 0 : off};
 }
 
-// At a pole x has no slope, and a cell's middle may be the pole: from the nearest of points all around
-// it instead.
+// At a pole x has no slope, and a cell's middle may be the pole: from the nearest of points all
+// around it instead.
 GridSearch::Found GridSearch::near_pole(const glm::dvec3& wanted, Found found) const {
   if (found.off_cells == 0 || !grid_->around()) return found;
   constexpr int kAround = 36;
-  Seed nearest{found.at, direction(found.at)};
-  for (const double y : {found.at.y - 0.2, found.at.y + 0.2, found.at.y - 0.6, found.at.y + 0.6})
+  Seed nearest{found.at, glm::dvec3(0.0)};
+  for (int row = -6; row <= 6; ++row)
     for (int n = 0; n < kAround; ++n) {
-      const glm::dvec2 at = inside({grid_->nx() * (n + 0.5) / kAround, y});
+      const glm::dvec2 at = inside({grid_->nx() * (n + 0.5) / kAround, found.at.y + 0.2 * row});
       const Seed seed{at, direction(at)};
-      if (glm::dot(seed.direction, wanted) > glm::dot(nearest.direction, wanted)) nearest = seed;
+      const double slope =
+          glm::length(direction(inside(at + glm::dvec2(0.01, 0))) - seed.direction);
+      if (slope > 1e-6 * cell_rad_ &&
+          glm::dot(seed.direction, wanted) > glm::dot(nearest.direction, wanted))
+        nearest = seed;
     }
   const Found again = polish(wanted, nearest.at);
   return again.off_cells < found.off_cells ? again : found;

@@ -10,7 +10,7 @@ namespace nepho::netcdf {
 
 // Inverts a HorizontalGrid: which cell holds a latitude and longitude. From the nearest of some
 // cells, downhill from cell to cell, then Newton's method on the unit sphere of (lat, lon); poles
-// and the end of the longitudes are no special places. Position to 1e-6 of a cell. About 3 us.
+// and the end of the longitudes are no special places. Position to 1e-6 of a cell. About 5 us.
 class GridSearch {
  public:
   explicit GridSearch(std::shared_ptr<const HorizontalGrid> grid);

@@ -11,6 +11,7 @@
 
 #include "geo/place.h"
 #include "pyramid/serve.h"
+#include "sources/netcdf/grid_search.h"
 #include "sources/netcdf/hat_remap.h"
 #include "sources/netcdf/layout.h"
 #include "sources/netcdf/surface_of.h"
@@ -176,7 +177,8 @@ void NetcdfSource::describe(const std::string& name, const Moment& first) {
   info_.times_s = forecast_->times_s();
   info_.phase = {PhaseKind::kMie, forecast_->liquid_radius_m(), info_.phase.asymmetry};
   info_.on_planet = true;
-  info_.surface = surface_of(first.search(), forecast_->ground(0));
+  const GroundMap ground = ground_map(*forecast_);
+  info_.surface = ground.map;
   info_.channels[0].max_abs_error = largest_code_error(first.total(), info_.chart->roots());
   if (forecast_->has_ice()) {
     ChannelInfo ice = info_.channels[0];
@@ -188,6 +190,9 @@ void NetcdfSource::describe(const std::string& name, const Moment& first) {
   info_.source_bytes = sizeof *this + first.bytes();
   info_.assumptions = forecast_->assumptions();
   info_.facts = forecast_->facts();
+  if (ground.map && !ground.has_water)
+    info_.assumptions.push_back(
+        "The data have no land mask: sea is where the ground is at or below 0.5 m.");
   state_facts(first);
 }
 
