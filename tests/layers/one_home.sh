@@ -22,6 +22,7 @@ check() {  # check FOLDERS FIND_REGEX INCLUDE_REGEX, FOLDERS separated by |
 check 'ingest/sources/openvdb|tests/openvdb' 'find_package\(OpenVDB' 'openvdb/'
 check 'tools/image/oiio' 'find_(package|path)\(.*OpenImageIO' 'OpenImageIO/'
 check 'ingest/geo|tests' 'find_package\(GeographicLib' 'GeographicLib/'
+check 'tools/sun' 'find_path\(LIBNOVA' 'libnova/'
 check 'tools' 'find_package\(CLI11' 'CLI/'
 check 'tools|tests' 'find_package\(nlohmann_json' 'nlohmann/'
 exit $failed
