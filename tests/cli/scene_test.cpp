@@ -272,7 +272,7 @@ TEST(SceneFile, planets_suns_and_stands_that_cannot_be_are_named) {
       "horizon_W_per_m2_sr_nm": [0, 0, 0], "below_W_per_m2_sr_nm": [0, 0, 0]})";
   expect_in("exclude each other", with(sky + ", \"planet\": {}"));
   EXPECT_EQ(with(sky + ", \"planet\": \"none\""), "no error");
-  expect_in("s.json:3:16 (sun.utc): not a date: found '2005-02-30'",
+  expect_in("s.json:3:17 (sun.utc): not a date: found '2005-02-30'",
             with("\"sun\": {\"utc\": \"2005-02-30\"}"));
   expect_in("exclude each other", with("\"sun\": {\"utc\": \"2005-02-03\", \"azimuth_deg\": 1, "
                                        "\"elevation_deg\": 2}"));
