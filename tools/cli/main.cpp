@@ -83,6 +83,15 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
       ->group(group);
 }
 
+// A value given twice is a bad value; CLI11 calls it the same as a missing one.
+void refuse_repeated(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands())
+    for (const CLI::Option* option : command->get_options())
+      if (option->get_items_expected_max() == 1 && option->count() > 1)
+        throw Error({"given more than once", option->get_name(), "one value",
+                     "'" + option->results()[0] + "' and '" + option->results()[1] + "'", ""});
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Draws clouds as they are: any source, one contract, a stated error.", "nephoscope");
   app.set_version_flag("--version", "nephoscope " NEPHO_VERSION);
@@ -121,6 +130,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
+    refuse_repeated(app);
     spdlog::error("{} (see nephoscope --help)", e.what());
     return 2;
   }
