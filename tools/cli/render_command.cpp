@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/commands.h"
@@ -68,6 +69,16 @@ void print_result(const fs::path& output, const OpenedScene& opened, const std::
               usage.cpu_s, usage.wall_s, usage.peak_mib);
 }
 
+// What no one would notice was without an effect.
+void refuse_idle_options(const RenderOptions& options, const Scene& asked,
+                         const OpenedScene& opened) {
+  const bool weather = std::ranges::any_of(
+      opened.sources, [](const auto& source) { return source->info().on_planet; });
+  if (options.no_planet && !weather && !asked.planet)
+    throw Error({"nothing to leave out", "--no-planet", "a volume that is weather of a planet",
+                 "none", ""});
+}
+
 }  // namespace
 
 void render_command(const RenderOptions& options) {
@@ -76,11 +87,17 @@ void render_command(const RenderOptions& options) {
   const Scene scene = scene_from(options, pictures);
   const fs::path output = output_of(options, pictures);
   const PictureFormat format = picture_format(output);
+  Libraries libraries;
+  libraries.start = mapped_libraries();
   pictures.check_format(output);
+  libraries.format_known = mapped_libraries();
   // Before any work: what cannot be written later is known now.
   OutputFile file(output, largest_size(scene.render, format));
   const auto context = make_egl_context();
+  libraries.device = mapped_libraries();
   OpenedScene opened = open_scene(host, scene);
+  refuse_idle_options(options, scene, opened);
+  libraries.scene_open = mapped_libraries();
 
   const RenderResult result = render(opened.request);
   const FloatImage linear = linear_image(result.image);
@@ -98,11 +115,13 @@ void render_command(const RenderOptions& options) {
        {"nephoscope:assumptions", joined(opened.assumptions)},
        {"nephoscope:version", NEPHO_VERSION}});
   file.commit();
+  libraries.picture_written = mapped_libraries();
   print_result(output, opened, error, find_exposure);
   if (options.explain)
-    std::printf(
-        "%s",
-        explanation(opened, result, context->description(), PictureFiles::module_loaded()).c_str());
+    std::printf("%s", explanation(opened, result, context->description(), libraries).c_str());
+  if (options.explain_macros)
+    for (const std::string& macro : result.report.shader_switches)
+      std::printf("macro: %s\n", macro.c_str());
 }
 
 }  // namespace nepho
