@@ -7,6 +7,7 @@
 #include "common/gl_context.h"
 #include "common/open_scene.h"
 #include "common/output_file.h"
+#include "common/planet_scene.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "image/tone.h"
@@ -102,11 +103,16 @@ void render_command(const RenderOptions& options) {
   const RenderResult result = render(opened.request);
   const FloatImage linear = linear_image(result.image);
   const bool find_exposure = !opened.scene.exposure_ev;
-  if (find_exposure) opened.scene.exposure_ev = exposure_from(linear, result.image.optical_depth);
+  const bool planet = opened.scene.planet.has_value();
+  if (find_exposure)
+    opened.scene.exposure_ev =
+        planet ? exposure_on_planet(linear, result.image.optical_depth, white_in_the_sun(opened))
+               : exposure_from(linear, result.image.optical_depth);
+  const glm::dvec3 white = planet ? opened.request.sun.irradiance_W_per_m2_nm : glm::dvec3(1);
   const ByteImage shown = is_linear(format)
                               ? ByteImage()
                               : to_display(linear, *opened.scene.exposure_ev, opened.scene.tone_map,
-                                           opened.scene.dither);
+                                           opened.scene.dither, white);
   const std::string error = error_line(result.error);
   pictures.write(
       file.temporary(), format, shown, linear,

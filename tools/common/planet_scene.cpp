@@ -373,6 +373,18 @@ double time_at(const VolumeInfo& info, std::int64_t utc_ns, const std::string& w
                utc_text(utc_ns), ""});
 }
 
+double white_in_the_sun(const OpenedScene& opened) {
+  const Camera& camera = opened.request.camera;
+  const Sun& sun = opened.request.sun;
+  const bool low =
+      geodetic_height_m(body_of(opened).value_or(Ellipsoid::wgs84()), camera.eye_m) < kLowEye_m;
+  const double mu = glm::dot(glm::normalize(low ? camera.eye_m : camera.target_m), sun.to_sun);
+  if (mu <= -0.1) return 0;
+  const double through_air = std::exp(-0.2 / (std::max(mu, 0.0) + 0.05));
+  const double luminance = glm::dot(sun.irradiance_W_per_m2_nm, {0.2126, 0.7152, 0.0722});
+  return luminance * through_air * (0.5 + 0.5 * std::max(mu, 0.0)) / glm::pi<double>();
+}
+
 PlanetShot frame_on_planet(OpenedScene& opened, const Ellipsoid& body) {
   return Framing(opened, body).run();
 }

@@ -33,4 +33,8 @@ struct PlanetShot {
 };
 PlanetShot frame_on_planet(OpenedScene& opened, const Ellipsoid& body);
 
+// Luminance of a white matt surface that lies half towards the sun, where an opened scene's camera
+// looks: through about as much air as is there. A yardstick for exposures, good to a third.
+double white_in_the_sun(const OpenedScene& opened);
+
 }  // namespace nepho
