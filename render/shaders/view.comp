@@ -28,7 +28,7 @@ void add_step(inout Seen seen, vec3 s0, vec3 s1, float tau) {
 // Halves a step until its optical depth is under `most`: the source is linear in optical depth within
 // a step, and where a voxel is thick it falls off exponentially. T bounds how many steps there are.
 void limit_step(float t, inout float step_m, float k0, inout float k_mid, inout float k1, float most) {
-  while (simpson_optical_depth(k0, k_mid, k1, step_m) > most) {
+  while (simpson_optical_depth(k0, k_mid, k1, step_m) > most && step_m > 2.0 * least_step(t)) {
     step_m *= 0.5;
     k1 = k_mid;
     k_mid = total_extinction_at(t + 0.5 * step_m);
@@ -52,7 +52,7 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_, inout vec3
     float next = smooth_ ? min(t + voxel, end) : cell_end(t, end, sub_steps);
     float step_m = (next - t) / float(sub_steps);
 #else
-    float step_m = end - t < 1.25 * h ? end - t : h;
+    float step_m = end - t < 1.25 * h ? end - t : max(h, least_step(t));
 #endif
     float k_mid = total_extinction_at(t + 0.5 * step_m), k1 = total_extinction_at(t + step_m);
 #ifdef NEPHO_ADAPTIVE
