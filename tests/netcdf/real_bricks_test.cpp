@@ -89,7 +89,7 @@ TEST(RealBricks, TwoSourcesFromFourThreads) {
   for (std::size_t t = 0; t < 4; ++t)
     threads.emplace_back([&, t] {
       for (std::size_t n = 0; n < work.size(); ++n) {
-        const std::size_t at = (n * 7 + t * 11) % work.size();  // times in turn
+        const std::size_t at = (n + t * work.size() / 4) % work.size();  // each its own time
         hashes[t][at] = hash_of(*sources[t % 2], work[at].first, work[at].second);
       }
     });
