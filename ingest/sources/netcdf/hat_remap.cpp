@@ -69,6 +69,7 @@ HatRemap::HatRemap(std::shared_ptr<const ShellChart> chart, const Lattice& latti
                    const HorizontalGrid& grid, const ForecastColumns& columns,
                    const RemapOptions& options)
     : chart_(std::move(chart)),
+      lattice_(lattice),
       level_(lattice.max_level()),
       cells_(lattice.cells(lattice.max_level())) {
   remap_columns(grid, columns, options);
@@ -237,6 +238,42 @@ void HatRemap::samples(NodeKey key, Part part, double* samples) const {
     }
     for (std::size_t k = 0; k < kBrickSamples; ++k) samples[h + kArea * k] = sum[k];
   }
+}
+
+double HatRemap::value(std::uint32_t row, std::uint32_t k, const std::vector<float>& hats) const {
+  if (row == kNoRow) return 0;
+  double sum = 0;
+  for (std::uint32_t at = row_begin_[row]; at < row_begin_[row + 1]; ++at) {
+    const CellRange& range = ranges_[taps_[at].cell];
+    if (k >= range.first && k - range.first < range.count)
+      sum += double(taps_[at].weight) * double(hats[range.at + (k - range.first)]);
+  }
+  return sum;
+}
+
+double HatRemap::interpolated(const glm::dvec3& ecef_m, Part part) const {
+  const std::vector<float>& hats = hats_[std::size_t(part)];
+  const RootPosition place = chart_->locate(ecef_m);
+  if (hats.empty() || !(place.q.z >= 0) || !(place.q.z <= 1)) return 0;
+  const Tile* rows = tile(lattice_.node_at(place.root, place.q, level_));
+  if (!rows) return 0;
+  std::array<std::uint32_t, 3> cell{};
+  glm::dvec3 part_of_cell;
+  for (int a = 0; a < 3; ++a) {
+    const double n = cells_[std::size_t(a)], at = std::clamp(place.q[a] * n, 0.0, n);
+    cell[std::size_t(a)] = std::uint32_t(std::min(std::floor(at), n - 1));
+    part_of_cell[a] = at - cell[std::size_t(a)];
+  }
+  double sum = 0;
+  for (std::uint32_t corner = 0; corner < 8; ++corner) {
+    const std::uint32_t x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+    const double weight = (x ? part_of_cell.x : 1 - part_of_cell.x) *
+                          (y ? part_of_cell.y : 1 - part_of_cell.y) *
+                          (z ? part_of_cell.z : 1 - part_of_cell.z);
+    const std::uint32_t h = cell[0] % kBrickCells + x + kBrickSamples * (cell[1] % kBrickCells + y);
+    if (weight > 0) sum += weight * value((*rows)[h], cell[2] + z, hats);
+  }
+  return sum;
 }
 
 std::uint64_t HatRemap::bytes() const {

@@ -44,6 +44,9 @@ class HatRemap {
   std::vector<NodeKey> nodes(Part part) const;
   // 9^3 samples of any finest node, x fastest, 1/m. Thread-safe.
   void samples(NodeKey key, Part part, double* samples) const;
+  // The trilinear field of the samples at a point of the world; 0 outside the shell.
+  double interpolated(const glm::dvec3& ecef_m, Part part) const;
+  const Lattice& lattice() const { return lattice_; }
   std::uint64_t bytes() const;
   std::size_t sample_columns() const { return row_begin_.empty() ? 0 : row_begin_.size() - 1; }
   bool has_ice() const { return !hats_[1].empty(); }
@@ -65,8 +68,10 @@ class HatRemap {
   void overlap_cells(const HorizontalGrid& grid, const ForecastColumns& columns);
   void list_tiles(const std::vector<Column>& rows);
   const Tile* tile(NodeKey key) const;
+  double value(std::uint32_t row, std::uint32_t k, const std::vector<float>& hats) const;
 
   std::shared_ptr<const ShellChart> chart_;
+  Lattice lattice_;
   int level_;
   Index3 cells_;
   double reference_height_m_ = 0;  // where the columns' walls are

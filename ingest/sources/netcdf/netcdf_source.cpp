@@ -11,6 +11,7 @@
 
 #include "geo/place.h"
 #include "pyramid/serve.h"
+#include "sources/netcdf/box_around.h"
 #include "sources/netcdf/grid_search.h"
 #include "sources/netcdf/hat_remap.h"
 #include "sources/netcdf/layout.h"
@@ -28,14 +29,19 @@ std::string text(const char* format, double a, double b = 0) {
   return buffer;
 }
 
+using Boxes = std::function<std::shared_ptr<const BoxAround>(const HatRemap&)>;
+
 // One time of a forecast: its hats, their coarse levels, and the model's own cells.
 class Moment {
  public:
-  Moment(const Forecast& forecast, std::size_t time, const Layout& layout, RemapOptions options)
+  // `boxes` gives the cubes to sample in, or null for bricks of the shell.
+  Moment(const Forecast& forecast, std::size_t time, const Layout& layout, RemapOptions options,
+         const Boxes& boxes)
       : options_(options),
         search_(forecast.grid(time)),
         columns_(forecast.columns(time)),
         remap_(layout.chart, layout.lattice, search_.grid(), columns_, options),
+        box_(boxes(remap_)),
         total_(pyramid(layout, HatRemap::Part::kTotal)) {
     columns_.ice_extinction_per_m = std::vector<float>();
     if (remap_.has_ice()) ice_.emplace(pyramid(layout, HatRemap::Part::kIce));
@@ -47,7 +53,10 @@ class Moment {
   const ForecastColumns& columns() const { return columns_; }
   const HatRemap& remap() const { return remap_; }
 
-  double point_extinction_per_m(const GeodeticPoint& point) const {
+  // The model's own cells; of cubes, what they sample.
+  double point_extinction_per_m(const Ellipsoid& body, const glm::dvec3& ecef_m) const {
+    if (box_) return remap_.interpolated(ecef_m, HatRemap::Part::kTotal);
+    const GeodeticPoint point = geodetic_point(body, ecef_m);
     const auto [at, off_cells] = search_.find({point.latitude_deg, point.longitude_deg});
     if (off_cells > 0) return 0;
     const auto index = [](double x, int n) { return std::size_t(std::min(int(x), n - 1)); };
@@ -70,14 +79,18 @@ class Moment {
  private:
   SparsePyramid pyramid(const Layout& layout, HatRemap::Part part) const {
     SparsePyramid::Field field;
-    field.nodes = remap_.nodes(part);
+    field.nodes = box_ ? box_->nodes(remap_, part) : remap_.nodes(part);
     if (field.nodes.size() > kMostNodes)
       throw Error({"the forecast has too many bricks at this resolution", "",
                    "at most " + std::to_string(kMostNodes), std::to_string(field.nodes.size()),
                    "choose a coarser vertical_resolution or horizontal_resolution"});
     field.samples = [this, part](NodeKey key, double* samples) {
-      remap_.samples(key, part, samples);
+      if (box_)
+        box_->samples(remap_, part, key, samples);
+      else
+        remap_.samples(key, part, samples);
     };
+    if (box_) return {*box_->chart(), box_->lattice(), std::move(field)};
     return {*layout.chart, layout.lattice, std::move(field)};
   }
 
@@ -85,17 +98,27 @@ class Moment {
   GridSearch search_;
   ForecastColumns columns_;
   HatRemap remap_;
+  std::shared_ptr<const BoxAround> box_;
   SparsePyramid total_;
   std::optional<SparsePyramid> ice_;
+};
+
+struct SourceOptions {
+  LayoutOptions layout;
+  double clear_below_per_m;
+  bool box;
+  int max_level;  // of the box; 0: as memory allows
 };
 
 class NetcdfSource final : public BrickSource {
  public:
   NetcdfSource(const std::string& name, std::shared_ptr<const Forecast> forecast,
-               const LayoutOptions& layout_options, double clear_below_per_m)
-      : forecast_(std::move(forecast)), layout_(choose_layout(*forecast_, layout_options)) {
+               const SourceOptions& options)
+      : options_(options),
+        forecast_(std::move(forecast)),
+        layout_(choose_layout(*forecast_, options.layout)) {
     remap_options_.extend_below_m = layout_.extend_below_m;
-    remap_options_.clear_below_per_m = clear_below_per_m;
+    remap_options_.clear_below_per_m = options.clear_below_per_m;
     describe(name, *moment(0));
   }
 
@@ -114,7 +137,7 @@ class NetcdfSource final : public BrickSource {
   Status point_extinction_per_m(const glm::dvec3& ecef_m, double time_s,
                                 double& extinction_per_m) const noexcept override {
     return answered(time_s, [&](const Moment& now) {
-      extinction_per_m = now.point_extinction_per_m(geodetic_point(layout_.chart->body(), ecef_m));
+      extinction_per_m = now.point_extinction_per_m(layout_.chart->body(), ecef_m);
       return Status::kOk;
     });
   }
@@ -150,20 +173,30 @@ class NetcdfSource final : public BrickSource {
     while (moments_.size() >= kKept) moments_.pop_back();  // first, so that never three are held
     // Isolated: a stolen task that reads another brick would wait for the lock this thread holds.
     tbb::this_task_arena::isolate([&] {
-      moments_.emplace_front(
-          time, std::make_shared<const Moment>(*forecast_, time, layout_, remap_options_));
+      moments_.emplace_front(time, std::make_shared<const Moment>(
+                                       *forecast_, time, layout_, remap_options_,
+                                       [&](const HatRemap& remap) { return box_around(remap); }));
     });
     return moments_.front().second;
+  }
+
+  // The same for all times, made for the clouds of the first.
+  std::shared_ptr<const BoxAround> box_around(const HatRemap& remap) const {
+    if (options_.box && !box_)
+      box_ = std::make_shared<BoxAround>(layout_.chart, remap, options_.max_level);
+    return box_;
   }
 
   void describe(const std::string& name, const Moment& first);
   void state_facts(const Moment& first);
 
+  SourceOptions options_;
   std::shared_ptr<const Forecast> forecast_;
   Layout layout_;
   RemapOptions remap_options_;
   VolumeInfo info_;
   mutable std::mutex mutex_;
+  mutable std::shared_ptr<const BoxAround> box_;
   mutable std::list<std::pair<std::size_t, std::shared_ptr<const Moment>>>
       moments_;  // newest first
 };
@@ -173,6 +206,12 @@ void NetcdfSource::describe(const std::string& name, const Moment& first) {
   info_.chart = layout_.chart;
   info_.lattice = layout_.lattice;
   info_.finest = SampleKind::kHat;
+  if (box_) {
+    info_.chart = box_->chart();
+    info_.lattice = box_->lattice();
+    info_.finest = SampleKind::kPoint;
+    info_.facts.push_back(text("Cubes of %.4g m around the whole planet.", box_->voxel_m()));
+  }
   info_.time_origin_ns = forecast_->time_origin_ns();
   info_.times_s = forecast_->times_s();
   info_.phase = {PhaseKind::kMie, forecast_->liquid_radius_m(), info_.phase.asymmetry};
@@ -189,7 +228,8 @@ void NetcdfSource::describe(const std::string& name, const Moment& first) {
   }
   info_.source_bytes = sizeof *this + first.bytes();
   info_.assumptions = forecast_->assumptions();
-  info_.facts = forecast_->facts();
+  const std::vector<std::string> facts = forecast_->facts();
+  info_.facts.insert(info_.facts.begin(), facts.begin(), facts.end());
   if (ground.map && !ground.has_water)
     info_.assumptions.push_back(
         "The data have no land mask: sea is where the ground is at or below 0.5 m.");
@@ -200,8 +240,8 @@ void NetcdfSource::state_facts(const Moment& first) {
   info_.facts.push_back(text("Finest voxels are %.4g km wide (at most) and %.4g m high.",
                              layout_.voxel_width_m / 1000, layout_.voxel_height_m));
   const glm::dvec2 range_m = forecast_->height_range_m();
-  info_.facts.push_back(text("The data reach from %.0f m to %.1f km; clouds end there.", range_m.x,
-                             range_m.y / 1000));
+  info_.facts.push_back(
+      text("The data reach from %.0f m to %.1f km.", range_m.x, range_m.y / 1000));
   // Cloud in the topmost layer is cut, whatever the model had above it.
   const ForecastColumns& columns = first.columns();
   const std::size_t nz = std::size_t(columns.nz);
@@ -214,7 +254,7 @@ void NetcdfSource::state_facts(const Moment& first) {
   }
   if (cut > 0)
     info_.facts.push_back(
-        text("The data end at %.1f km: clouds are cut off there, in %.0f %% of "
+        text("Clouds are cut off at the top of the data, at %.1f km, in %.0f %% of "
              "the cloudy columns.",
              range_m.y / 1000, 100.0 * double(cut) / double(cloudy)));
   info_.assumptions.push_back(
@@ -226,12 +266,17 @@ void NetcdfSource::state_facts(const Moment& first) {
 std::unique_ptr<BrickSource> make_source(const std::string& volume_name,
                                          std::shared_ptr<const Forecast> forecast,
                                          Parameters& parameters) {
-  const LayoutOptions options = {parameters.positive("horizontal_resolution"),
-                                 parameters.positive("vertical_resolution")};
-  const double clear_below_per_m = parameters.number_in("clear_below", 1e-9, 0, 1e-3);
+  SourceOptions options{};
+  options.layout = {parameters.positive("horizontal_resolution"),
+                    parameters.positive("vertical_resolution")};
+  options.clear_below_per_m = parameters.number_in("clear_below", 1e-9, 0, 1e-3);
+  options.box = parameters.choice("chart", {"shell", "box"}) == "box";
+  options.max_level = parameters.integer("max_level", 0, 0, NodeKey::kMaxSplitsZ);
+  if (options.max_level > 0 && !options.box)
+    throw Error({"a level without a box", parameters.where("max_level"), "chart box", "chart shell",
+                 "of the shell, choose vertical_resolution and horizontal_resolution"});
   parameters.finish();
-  return std::make_unique<NetcdfSource>(volume_name, std::move(forecast), options,
-                                        clear_below_per_m);
+  return std::make_unique<NetcdfSource>(volume_name, std::move(forecast), options);
 }
 
 }  // namespace nepho::netcdf
