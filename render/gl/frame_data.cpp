@@ -147,7 +147,9 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
 
 }  // namespace
 
-bool lights(const Sky& sky) {
+bool sky_lights(const RenderRequest& request) {
+  if (request.planet) return request.planet->air.has_value();
+  const Sky& sky = request.sky;
   const glm::dvec3 black(0.0);
   return sky.zenith_W_per_m2_sr_nm != black || sky.horizon_W_per_m2_sr_nm != black ||
          sky.below_W_per_m2_sr_nm != black;
@@ -155,7 +157,7 @@ bool lights(const Sky& sky) {
 
 Refinement refinement_of(const RenderRequest& request) {
   Refinement refinement{request.camera, request.settings, {}};
-  refinement.cost.total = lights(request.sky) ? bytes_with_sky : bytes_without_sky;
+  refinement.cost.total = sky_lights(request) ? bytes_with_sky : bytes_without_sky;
   return refinement;
 }
 
@@ -168,7 +170,7 @@ GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
   scene.frame.height = settings.height;
   scene.frame.step_voxels = float(settings.step_voxels.value_or(2));
   scene.frame.tolerance = float(settings.tolerance);
-  scene.sky = lights(request.sky);
+  scene.sky = sky_lights(request);
   std::vector<Phase> rows;
   for (std::size_t v = 0; v < forest.volumes.size(); ++v) {
     const RenderVolume& volume = request.volumes[v];
@@ -179,6 +181,11 @@ GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
     if (volume.co_albedo != glm::dvec3(0)) scene.absorbs = true;
     add_nodes(scene, forest.volumes[v], int(v));
     scene.volumes.push_back(data);
+  }
+  if (request.planet) {
+    const Ellipsoid& body = request.planet->body;
+    scene.frame.ground_radius_m = body.equatorial_m;
+    scene.frame.ground_z_scale = body.equatorial_m / body.polar_m;
   }
   return scene;
 }

@@ -28,8 +28,9 @@ struct GpuScene {
 
 // What refinement goes by: the request, and what its tiles cost here.
 Refinement refinement_of(const RenderRequest& request);
-// A sky that is not black lights the clouds: the light tiles then hold its visibility too.
-bool lights(const Sky& sky);
+// A sky that is not black, or air, lights the clouds: the light tiles then hold the sky's visibility
+// too.
+bool sky_lights(const RenderRequest& request);
 
 GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest);
 

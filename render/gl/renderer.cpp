@@ -4,12 +4,14 @@
 #include <cmath>
 #include <ctime>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/error.h"
 #include "gl/atlas.h"
 #include "gl/frame_data.h"
 #include "gl/object.h"
+#include "gl/planet_passes.h"
 #include "reference/probe.h"
 #include "tree/forest.h"
 
@@ -54,6 +56,7 @@ class Renderer {
   const RenderRequest& request_;
   Forest forest_;
   gl::GpuScene scene_;
+  std::optional<gl::PlanetPasses> planet_;  // absent: no planet
   std::array<int, 3> atlas_size_{}, light_size_{};
   gl::Texture atlas_, light_atlas_, picture_;
   gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_;
@@ -71,6 +74,7 @@ void Renderer::timed(const char* name, const std::function<void()>& work) {
   work();
   glFinish();
   gl::check_errors(name);
+  if (overruns_.id()) { std::uint32_t n=0; glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT); glGetNamedBufferSubData(overruns_.id(), 0, 4, &n); fprintf(stderr, "DBG %s %u\n", name, n); }
   result_.report.passes.push_back({name, process_cpu_s() - before_s});
 }
 
@@ -80,7 +84,7 @@ std::string Renderer::defines(bool lit) const {
   const auto define = [&](const std::string& name, const std::string& value = "1") {
     text += "#define NEPHO_" + name + " " + value + "\n";
   };
-  define("VOLUMES", std::to_string(scene_.volumes.size()));
+  define("VOLUMES", std::to_string(std::max<std::size_t>(scene_.volumes.size(), 1)));
   // Loops over volumes and octaves are written out: see shaders/march.glsl.
   const int octaves = s.light == Light::kSingle ? 1 : s.octaves;
   std::string each_volume, each_octave;
@@ -99,6 +103,7 @@ std::string Renderer::defines(bool lit) const {
   if (sky_light()) define("SKY_LIGHT");
   if (scene_.absorbs) define("ABSORPTION");
   if (lit) define("LIT");
+  if (planet_) text += planet_->defines();
   define("SUN_STEP", std::to_string(s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0));
 #ifdef NEPHO_MUTANT_SHADER  // tests: one planted mistake, by name
   define(NEPHO_MUTANT_SHADER);
@@ -126,6 +131,7 @@ void Renderer::upload() {
     buffer->bind(binding++);
   glBindTextureUnit(0, atlas_.id());
   glBindTextureUnit(1, light_atlas_.id());
+  if (planet_) planet_->upload();
 }
 
 // `samples` invocations for each light tile.
@@ -164,6 +170,7 @@ void Renderer::view() {
   const gl::Program program = gl::compile("view", nepho_shader_view, defines(true));
   glUseProgram(program.id());
   glBindImageTexture(0, id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  if (planet_) planet_->bind_view();
   const GLint first = glGetUniformLocation(program.id(), "first_pixel");
   for (int y = 0; y < height; y += kPixelBlock)
     for (int x = 0; x < width; x += kPixelBlock) {
@@ -236,6 +243,10 @@ void Renderer::report() {
   report.staging_bytes = scene_.bricks.size() * sizeof(LeafBrick);
   report.image_bytes =
       16 * std::uint64_t(request_.settings.width) * std::uint64_t(request_.settings.height);
+  if (planet_)
+    planet_->add_to(report);
+  else
+    report.left_out.push_back("air and ground: the scene is on no planet");
   for (const VolumeTree& tree : forest_.volumes) {
     const VolumeInfo& info = tree.source->info();
     VolumeReport volume;
@@ -258,11 +269,15 @@ RenderResult Renderer::run() {
   timed("refine and read", [&] {
     forest_ = build_forest(request_.volumes, gl::refinement_of(request_));
     scene_ = gl::make_gpu_scene(request_, forest_);
+    if (request_.planet) planet_.emplace(request_, forest_);
     scene_.frame.least_transmittance = exact() ? kLeastTransmittanceExact : kLeastTransmittance;
   });
   timed("upload", [&] { upload(); });
   light();
+  if (planet_ && planet_->scene().sun_map)
+    timed("sun map", [&] { planet_->draw_sun_map(defines(false)); });
   timed("view", [&] { view(); });
+  if (planet_) timed("ground", [&] { planet_->draw_ground(picture_.id(), defines(false)); });
   timed("read back", [&] { read_back(); });
   check_overruns();
   if (request_.settings.probe_pixels > 0)

@@ -6,6 +6,7 @@
 #include "angles.glsl"
 
 #include "air.glsl"
+#include "daylight.glsl"
 #include "ground.glsl"
 #include "octaves.glsl"
 #include "phase.glsl"

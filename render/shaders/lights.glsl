@@ -41,9 +41,28 @@ void begin_lights() {
 #undef NEPHO_DO
 }
 
-float sun_part;  // of the sun's disc that the planet leaves free; set by total_source_at
+#ifdef NEPHO_GROUND
+// What arrives at the last place asked for: across the sun's beam, and from the sky.
+vec3 sun_light, light_up, light_side, light_down;
 
-#ifdef NEPHO_SHELL
+void light_at(float t_m) {
+  float height_m, mu, mu_sun;
+  planet_place(t_m, height_m, mu, mu_sun);
+#ifdef NEPHO_AIR
+  sun_light = sun_in_air(height_m, mu_sun);
+  vec2 place = light_place(height_m, mu_sun);
+  light_up = air_light(place, LIGHT_UP);
+  light_side = air_light(place, LIGHT_SIDE);
+  light_down = air_light(place, LIGHT_DOWN);
+#else
+  sun_light = planet_sun_part(height_m, mu_sun) * vec_of(frame.sun_irradiance);
+#endif
+}
+#else
+float sun_part;  // of the sun's disc that the planet leaves free; set by total_source_at
+#endif
+
+#if defined(NEPHO_SHELL) && !defined(NEPHO_GROUND)
 float sun_part_at(float t_m) {
   dvec3 stretch = dvec3(1.0LF, 1.0LF, frame.ground_z_scale);
   dvec3 p = stretch * (ray_start + ray_direction * double(t_m)), s = stretch * vec_of(frame.to_sun);
@@ -62,8 +81,15 @@ vec3 source_at(int volume, float t_m) {
   scattered += octave_phase[volume * NEPHO_OCTAVES + n] * exp(-(octave_rate[n] * light.r));
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
+#ifdef NEPHO_GROUND
+  vec3 radiance = scattered * sun_light;
+#else
   vec3 radiance = sun_part * scattered * vec_of(frame.sun_irradiance);
-#ifdef NEPHO_SKY_LIGHT
+#endif
+#if defined(NEPHO_SKY_LIGHT) && defined(NEPHO_GROUND)
+  for (int c = 0; c < 3; ++c)
+    radiance[c] += sky_source(light.g, light.b, light.a, light_up[c], light_side[c], light_down[c]);
+#elif defined(NEPHO_SKY_LIGHT)
   for (int c = 0; c < 3; ++c)
     radiance[c] += sky_source(light.g, light.b, light.a, frame.zenith[c], frame.horizon[c], frame.below[c]);
 #endif
@@ -78,7 +104,9 @@ vec3 source_at(int volume, float t_m) {
 vec3 total_source_at(float t_m) {
   vec3 sum = vec3(0.0);
   float weight = 0.0;
-#ifdef NEPHO_SHELL
+#ifdef NEPHO_GROUND
+  light_at(t_m);
+#elif defined(NEPHO_SHELL)
   sun_part = sun_part_at(t_m);
 #else
   sun_part = 1.0;

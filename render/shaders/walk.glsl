@@ -91,6 +91,9 @@ void descend(int volume, inout Walk w, ivec3 cell) {
 #endif
 }
 
+#if defined(NEPHO_SHELL) || defined(NEPHO_GROUND)
+#include "fp64.glsl"
+#endif
 #include "walk_box.glsl"
 #ifdef NEPHO_SHELL
 #include "walk_shell.glsl"
