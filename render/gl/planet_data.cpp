@@ -142,7 +142,8 @@ class PlanetBuilder {
         };
         const glm::dvec3 low = corner(glm::dvec3(0.0)), high = corner(glm::dvec3(1.0));
         // Arcs bulge over their chords.
-        clouds_.balls.emplace_back((low + high) / 2.0, (shell ? 0.6 : 0.5) * glm::length(high - low));
+        clouds_.balls.emplace_back((low + high) / 2.0,
+                                   (shell ? 0.6 : 0.5) * glm::length(high - low));
         for (int c = shell ? 7 : 0; c < 8; ++c)
           clouds_.top_radius_m =
               std::max(clouds_.top_radius_m,
@@ -161,8 +162,9 @@ class PlanetBuilder {
       if (endless(chart)) outer_m = 1e15;  // never outside
       for (int root = 0; root < chart.roots(); ++root)
         for (int p = 0; p < 50; ++p)
-          outer_m = std::max(outer_m, glm::length(scaled(chart.ecef_m(
-                                          {root, {p % 5 / 4.0, p / 5 % 5 / 4.0, p / 25}}))));
+          outer_m = std::max(
+              outer_m,
+              glm::length(scaled(chart.ecef_m({root, {p % 5 / 4.0, p / 5 % 5 / 4.0, p / 25}}))));
     }
     scene_.data.outer_m = outer_m + 100;
   }
@@ -178,18 +180,21 @@ class PlanetBuilder {
     const glm::dvec3 to_sun = glm::normalize(request_.sun.to_sun);
     const glm::dvec3 up = glm::normalize(center_m);
     glm::dvec3 u = glm::cross(up, to_sun);
-    u = glm::length(u) > 1e-3 ? glm::normalize(u)
-                              : glm::normalize(glm::cross(to_sun, glm::dvec3(to_sun.y, to_sun.z, to_sun.x)));
+    u = glm::length(u) > 1e-3
+            ? glm::normalize(u)
+            : glm::normalize(glm::cross(to_sun, glm::dvec3(to_sun.y, to_sun.z, to_sun.x)));
     const glm::dvec3 v = glm::cross(to_sun, u);
     // No farther than clouds are in sight over the horizon.
     const double turn = std::acos(radius_m / (radius_m + eye_height_m)) +
                         std::acos(radius_m / (radius_m + data.cloud_top_m));
-    const double sight_m = 2 * (radius_m + data.cloud_top_m) * std::sin(std::min(turn, std::numbers::pi) / 2) +
-                           data.cloud_top_m;
+    const double sight_m =
+        2 * (radius_m + data.cloud_top_m) * std::sin(std::min(turn, std::numbers::pi) / 2) +
+        data.cloud_top_m;
     double extent_m = 0;
     for (const glm::dvec4& ball : clouds_.balls) {
       const glm::dvec3 q = glm::dvec3(ball) - center_m;
-      extent_m = std::max({extent_m, std::abs(glm::dot(q, u)) + ball.w, std::abs(glm::dot(q, v)) + ball.w});
+      extent_m = std::max(
+          {extent_m, std::abs(glm::dot(q, u)) + ball.w, std::abs(glm::dot(q, v)) + ball.w});
     }
     if (clouds_.endless) extent_m = sight_m;
     extent_m = std::min(extent_m, sight_m);

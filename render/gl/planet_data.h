@@ -12,7 +12,8 @@ namespace nepho::gl {
 
 // A request's planet as the shaders read it.
 
-static_assert(offsetof(PlanetData, surface_axes) == 120 && offsetof(PlanetData, rayleigh_per_m) == 224);
+static_assert(offsetof(PlanetData, surface_axes) == 120 &&
+              offsetof(PlanetData, rayleigh_per_m) == 224);
 static_assert(sizeof(PlanetData) == 376);
 
 struct PlanetScene {

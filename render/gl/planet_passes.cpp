@@ -59,7 +59,6 @@ std::string PlanetPasses::defines() const {
   if (scene_.terrain) text += "#define NEPHO_TERRAIN 1\n";
   if (scene_.sun_map) text += "#define NEPHO_SUN_MAP 1\n";
   if (scene_.clouds) text += "#define NEPHO_CLOUDS 1\n";
-  if (getenv("FINE")) text += std::string("#define NEPHO_AIR_FINENESS ") + getenv("FINE") + "\n";
   return text;
 }
 
@@ -68,7 +67,8 @@ glm::dvec3 PlanetPasses::mean_albedo() const {
   const GroundLook& look = request_.planet->ground;
   if (!scene_.terrain) return look.water_albedo;
   double water = 0;
-  for (const float w : scene_.surface->water) water += double(w) / double(scene_.surface->water.size());
+  for (const float w : scene_.surface->water)
+    water += double(w) / double(scene_.surface->water.size());
   return glm::mix(look.land_albedo, look.water_albedo, water);
 }
 
@@ -78,8 +78,7 @@ void PlanetPasses::upload() {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   if (scene_.air) {
     const Planet& planet = *request_.planet;
-    const AirTables tables =
-        make_air_tables(*planet.air, planet.body.equatorial_m, mean_albedo());
+    const AirTables tables = make_air_tables(*planet.air, planet.body.equatorial_m, mean_albedo());
     // Float: twilight is below what half floats hold, and filters of half floats are no faster.
     depth_ = make_texture_2d(tables.depth.width, tables.depth.height, GL_RGBA32F, GL_LINEAR);
     glTextureSubImage2D(depth_.id(), 0, 0, 0, tables.depth.width, tables.depth.height, GL_RGB,

@@ -58,8 +58,8 @@ class Renderer {
   gl::GpuScene scene_;
   std::optional<gl::PlanetPasses> planet_;  // absent: no planet
   std::array<int, 3> atlas_size_{}, light_size_{};
-  gl::Texture atlas_, light_atlas_, picture_;
-  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_;
+  gl::Texture atlas_, ice_atlas_, light_atlas_, picture_;
+  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_, ice_;
   RenderResult result_;
 };
 
@@ -74,7 +74,6 @@ void Renderer::timed(const char* name, const std::function<void()>& work) {
   work();
   glFinish();
   gl::check_errors(name);
-  if (overruns_.id()) { std::uint32_t n=0; glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT); glGetNamedBufferSubData(overruns_.id(), 0, 4, &n); fprintf(stderr, "DBG %s %u\n", name, n); }
   result_.report.passes.push_back({name, process_cpu_s() - before_s});
 }
 
@@ -102,6 +101,7 @@ std::string Renderer::defines(bool lit) const {
   if (!s.step_voxels) define("ADAPTIVE");
   if (sky_light()) define("SKY_LIGHT");
   if (scene_.absorbs) define("ABSORPTION");
+  if (scene_.has_ice) define("ICE");
   if (lit) define("LIT");
   if (planet_) text += planet_->defines();
   define("SUN_STEP", std::to_string(s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0));
@@ -131,6 +131,12 @@ void Renderer::upload() {
     buffer->bind(binding++);
   glBindTextureUnit(0, atlas_.id());
   glBindTextureUnit(1, light_atlas_.id());
+  if (scene_.has_ice) {
+    ice_atlas_ = gl::upload_ice(forest_, atlas_size_);
+    glBindTextureUnit(2, ice_atlas_.id());
+    ice_ = gl::Buffer(std::span<const BrickRecord>(scene_.ice));
+    ice_.bind(8);
+  }
   if (planet_) planet_->upload();
 }
 
@@ -235,12 +241,14 @@ void Renderer::report() {
   if (scene_.lit.empty()) report.left_out.push_back("light passes: nothing scatters");
   if (forest_.budget_bound)
     report.left_out.push_back("finer nodes that this view asks for: the budget is full");
-  report.atlas_bytes = 2 * gl::texels(atlas_size_);
+  if (!scene_.has_ice) report.left_out.push_back("ice: no volume tells it apart; one atlas");
+  report.atlas_bytes = (scene_.has_ice ? 4 : 2) * gl::texels(atlas_size_);
   report.sun_bytes = (sky_light() ? 8 : 2) * gl::texels(light_size_);
   report.node_bytes = scene_.nodes.size() * sizeof(NodeRecord) +
-                      scene_.bricks.size() * sizeof(BrickRecord) +
+                      (scene_.bricks.size() + scene_.ice.size()) * sizeof(BrickRecord) +
                       scene_.lit.size() * sizeof(LitRecord);
-  report.staging_bytes = scene_.bricks.size() * sizeof(LeafBrick);
+  report.staging_bytes =
+      scene_.bricks.size() * sizeof(LeafBrick) + scene_.ice.size() * sizeof(IceCodes);
   report.image_bytes =
       16 * std::uint64_t(request_.settings.width) * std::uint64_t(request_.settings.height);
   if (planet_)

@@ -4,6 +4,10 @@
 // Phase function towards the eye times a^n, per octave: the sun is distant, so once per ray.
 vec3 octave_phase[NEPHO_VOLUMES * NEPHO_OCTAVES];
 float octave_rate[NEPHO_OCTAVES];  // b^n, once per ray
+#ifdef NEPHO_ICE
+layout(binding = 2) uniform sampler3D ice_atlas;
+vec3 octave_ice[NEPHO_VOLUMES * NEPHO_OCTAVES];  // the same of ice
+#endif
 
 layout(std430, binding = 4) readonly buffer PhaseBuffer { float phase_log[]; };  // rows of 1024 x 3
 
@@ -18,6 +22,33 @@ vec3 table_phase(int row, float one_minus_cos) {
   }
   return value;
 }
+
+#ifdef NEPHO_ICE
+// Part of a volume's extinction that is ice.
+float ice_part(int volume, float t_m) {
+  if (walks[volume].kind != NODE_BRICK || walks[volume].ice_range_per_m + walks[volume].ice_offset_per_m <= 0.0) return 0.0;
+  vec3 at = walks[volume].tile + leaf_cells_at(volume, walks[volume], t_m);
+#ifdef NEPHO_TEXELS8
+  float code = texel8(ice_atlas, at);
+#else
+  float code = textureLod(ice_atlas, (at + 0.5) / vec3(textureSize(ice_atlas, 0)), 0.0).r;
+#endif
+  float ice = walks[volume].ice_offset_per_m + walks[volume].ice_range_per_m * code;
+  // Where extinction goes to 0, the brick's own part stands for the limit.
+  float most = walks[volume].range_per_m + walks[volume].offset_per_m, least = 1e-5 * most;
+  float whole = clamp((walks[volume].ice_range_per_m + walks[volume].ice_offset_per_m) / most, 0.0, 1.0);
+  return clamp((ice + least * whole) / (extinction_at(volume, t_m) + least), 0.0, 1.0);
+}
+
+void set_ice_octaves(int volume, float one_minus_cos) {
+  octave_ice[volume * NEPHO_OCTAVES] = table_phase(volumes[volume].ice_phase_row, one_minus_cos);
+#define NEPHO_DO_OCTAVE(n)                \
+  octave_ice[volume * NEPHO_OCTAVES + n] = \
+      vec3(octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].ice_asymmetry)));
+  NEPHO_EACH_OCTAVE
+#undef NEPHO_DO_OCTAVE
+}
+#endif
 
 // Octaves are written out too (NEPHO_EACH_OCTAVE, from 1): powers of literals fold.
 void set_octaves(int volume, float one_minus_cos) {
@@ -39,6 +70,11 @@ void begin_lights() {
   set_octaves(v, one_minus_cos);
   NEPHO_EACH_VOLUME
 #undef NEPHO_DO
+#ifdef NEPHO_ICE
+#define NEPHO_DO(v) set_ice_octaves(v, one_minus_cos);
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
+#endif
 }
 
 #ifdef NEPHO_GROUND
@@ -76,9 +112,15 @@ float sun_part_at(float t_m) {
 vec3 source_at(int volume, float t_m) {
   vec3 at = walks[volume].light_tile + leaf_cells_at(volume, walks[volume], t_m);
   vec4 light = textureLod(light_atlas, (at + 0.5) / vec3(textureSize(light_atlas, 0)), 0.0);
-  vec3 scattered = octave_phase[volume * NEPHO_OCTAVES] * exp(-light.r);
-#define NEPHO_DO_OCTAVE(n) \
-  scattered += octave_phase[volume * NEPHO_OCTAVES + n] * exp(-(octave_rate[n] * light.r));
+#ifdef NEPHO_ICE
+  // k S = (k - k_ice) S_liquid + k_ice S_ice.
+  float ice = ice_part(volume, t_m);
+#define NEPHO_OCTAVE(n) mix(octave_phase[volume * NEPHO_OCTAVES + n], octave_ice[volume * NEPHO_OCTAVES + n], ice)
+#else
+#define NEPHO_OCTAVE(n) octave_phase[volume * NEPHO_OCTAVES + n]
+#endif
+  vec3 scattered = NEPHO_OCTAVE(0) * exp(-light.r);
+#define NEPHO_DO_OCTAVE(n) scattered += NEPHO_OCTAVE(n) * exp(-(octave_rate[n] * light.r));
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
 #ifdef NEPHO_GROUND

@@ -56,8 +56,8 @@ Seen see(out float ground_m) {
   return seen;
 }
 
-// The sun's disc, where the ray meets no ground; its edge is a pixel wide.
-void add_sun(inout Seen seen) {
+// Where the ray meets no ground: the night sky, and the sun's disc, whose edge is a pixel wide.
+void add_sky_beyond(inout Seen seen) {
   const float radius_rad = 0.004675;
   vec3 apart = vec3(vec_of(frame.to_sun) - ray_direction);
   float angle = 2.0 * arc_tangent(0.5 * length(apart), sqrt(max(1.0 - 0.25 * dot(apart, apart), 0.0)));
@@ -65,5 +65,9 @@ void add_sun(inout Seen seen) {
   float part = clamp((radius_rad - angle) / width + 0.5, 0.0, 1.0);
   // A pixel wider than the disc holds no more light than the disc.
   part *= min(1.0, pi * radius_rad * radius_rad / (width * width));
-  seen.radiance += seen.transmittance * part * vec_of(frame.sun_irradiance) / (pi * radius_rad * radius_rad);
+  float beyond = part / (pi * radius_rad * radius_rad);
+#ifdef NEPHO_AIR
+  beyond += night_sky;
+#endif
+  seen.radiance += seen.transmittance * beyond * vec_of(frame.sun_irradiance);
 }

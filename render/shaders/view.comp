@@ -158,7 +158,7 @@ void main() {
 #ifdef NEPHO_GROUND
   float ground_m;
   Seen seen = see(ground_m);
-  if (ground_m >= FAR) add_sun(seen);
+  if (ground_m >= FAR) add_sky_beyond(seen);
   imageStore(met, pixel, vec4(seen.transmittance, ground_m));
 #else
   Seen seen = see();
