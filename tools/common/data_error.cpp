@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -29,19 +30,10 @@ class Drawing {
   double number() { return double(random_() >> 11) * 0x1p-53; }
 
   NodeKey finest_node() {
-    std::vector<NodeKey> choices;
-    for (int root = 0; root < info_.chart->roots(); ++root)
-      choices.emplace_back(root, 0, 0u, 0u, 0u);
-    for (;;) {
-      std::erase_if(choices, [&](NodeKey key) {
-        return !(summary_of(source_, key, time_s_).max_extinction_per_m > 0);
-      });
-      if (choices.empty())
-        throw Error({"nothing to check", "volume '" + info_.name + "'", "some cloud", "none", ""});
-      const NodeKey key = choices[std::size_t(number() * double(choices.size()))];
-      if (key.level() == info_.lattice.max_level()) return key;
-      choices = info_.lattice.children(key);
-    }
+    constexpr int kTries = 1000;
+    for (int n = 0; n < kTries; ++n)
+      if (const auto key = descend()) return *key;
+    throw Error({"nothing to check", "volume '" + info_.name + "'", "some cloud", "none", ""});
   }
 
   std::vector<double> brick(NodeKey key) const {
@@ -55,6 +47,23 @@ class Drawing {
   }
 
  private:
+  // Nothing where the way ends above the finest level: a coarse brick may hold a neighbour's cloud
+  // on its face and nothing below.
+  std::optional<NodeKey> descend() {
+    std::vector<NodeKey> choices;
+    for (int root = 0; root < info_.chart->roots(); ++root)
+      choices.emplace_back(root, 0, 0u, 0u, 0u);
+    for (;;) {
+      std::erase_if(choices, [&](NodeKey key) {
+        return !(summary_of(source_, key, time_s_).max_extinction_per_m > 0);
+      });
+      if (choices.empty()) return std::nullopt;
+      const NodeKey key = choices[std::size_t(number() * double(choices.size()))];
+      if (key.level() == info_.lattice.max_level()) return key;
+      choices = info_.lattice.children(key);
+    }
+  }
+
   const BrickSource& source_;
   const VolumeInfo& info_;
   double time_s_;
