@@ -85,13 +85,13 @@ Json coordinates(const BrickSource& source, double time_s, const Ellipsoid& body
 
 Json check_of(const BrickSource& source, double time_s) {
   const DataError error = data_error(source, time_s);
-  return {
-      {"rms_per_m", error.rms_per_m},
-      {"relative_rms", error.mean_per_m > 0 ? Json(error.rms_per_m / error.mean_per_m) : Json()},
-      {"largest_per_m", error.largest_per_m},
-      {"mean_per_m", error.mean_per_m},
-      {"points", error.points},
-      {"nodes", error.nodes}};
+  return {{"rms_per_m", error.rms_per_m},
+          {"relative_rms",
+           error.field_rms_per_m > 0 ? Json(error.rms_per_m / error.field_rms_per_m) : Json()},
+          {"largest_per_m", error.largest_per_m},
+          {"field_rms_per_m", error.field_rms_per_m},
+          {"points", error.points},
+          {"nodes", error.nodes}};
 }
 
 double chosen_time(const BrickSource& source, const VolumeSpec& volume) {
@@ -166,7 +166,7 @@ void print_check(const Json& e) {
   std::printf("  data error: rms %.3g 1/m%s, largest %.3g 1/m (%d points in %d finest nodes)\n",
               e["rms_per_m"].get<double>(),
               relative ? (", " + number_text(100 * e["relative_rms"].get<double>()) +
-                          " % of the mean extinction")
+                          " % of the field's rms")
                              .c_str()
                        : "",
               e["largest_per_m"].get<double>(), e["points"].get<int>(), e["nodes"].get<int>());

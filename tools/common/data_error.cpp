@@ -29,10 +29,14 @@ class Drawing {
   // Uniform in [0, 1), the same on every machine.
   double number() { return double(random_() >> 11) * 0x1p-53; }
 
-  NodeKey finest_node() {
+  struct Node {
+    NodeKey key;
+    double weight = 1;  // the inverse of its probability
+  };
+  Node finest_node() {
     constexpr int kTries = 1000;
     for (int n = 0; n < kTries; ++n)
-      if (const auto key = descend()) return *key;
+      if (const auto node = descend()) return *node;
     throw Error({"nothing to check", "volume '" + info_.name + "'", "some cloud", "none", ""});
   }
 
@@ -49,18 +53,26 @@ class Drawing {
  private:
   // Nothing where the way ends above the finest level: a coarse brick may hold a neighbour's cloud
   // on its face and nothing below.
-  std::optional<NodeKey> descend() {
+  std::optional<Node> descend() {
     std::vector<NodeKey> choices;
     for (int root = 0; root < info_.chart->roots(); ++root)
       choices.emplace_back(root, 0, 0u, 0u, 0u);
+    Node node{choices.front()};
     for (;;) {
-      std::erase_if(choices, [&](NodeKey key) {
-        return !(summary_of(source_, key, time_s_).max_extinction_per_m > 0);
-      });
-      if (choices.empty()) return std::nullopt;
-      const NodeKey key = choices[std::size_t(number() * double(choices.size()))];
-      if (key.level() == info_.lattice.max_level()) return key;
-      choices = info_.lattice.children(key);
+      std::vector<double> most;
+      double sum = 0;
+      for (const NodeKey key : choices) {
+        most.push_back(double(summary_of(source_, key, time_s_).max_extinction_per_m));
+        sum += most.back();
+      }
+      if (!(sum > 0)) return std::nullopt;
+      double left = number() * sum;
+      std::size_t chosen = 0;
+      while (chosen + 1 < most.size() && (left -= most[chosen]) >= 0) ++chosen;
+      node.key = choices[chosen];
+      node.weight *= sum / most[chosen];
+      if (node.key.level() == info_.lattice.max_level()) return node;
+      choices = info_.lattice.children(node.key);
     }
   }
 
@@ -91,9 +103,9 @@ DataError data_error(const BrickSource& source, double time_s, std::uint64_t see
   Drawing draw(source, time_s, seed);
   const Index3& cells = info.lattice.cells(info.lattice.max_level());
   DataError result;
-  double squares = 0, sum = 0;
+  double squares = 0, field_squares = 0, weights = 0;
   for (int n = 0; n < kNodes; ++n) {
-    const NodeKey key = draw.finest_node();
+    const auto [key, weight] = draw.finest_node();
     const std::vector<double> brick = draw.brick(key);
     ++result.nodes;
     for (int p = 0; p < kPointsPerNode; ++p) {
@@ -109,14 +121,15 @@ DataError data_error(const BrickSource& source, double time_s, std::uint64_t see
                      "volume '" + info.name + "'", "", "", ""});
       if (status != Status::kOk) refuse(source, status);
       const double off_per_m = std::abs(interpolated(brick, at) - own_per_m);
-      squares += off_per_m * off_per_m;
-      sum += own_per_m;
+      squares += weight * off_per_m * off_per_m;
+      field_squares += weight * own_per_m * own_per_m;
+      weights += weight;
       result.largest_per_m = std::max(result.largest_per_m, off_per_m);
       ++result.points;
     }
   }
-  result.rms_per_m = std::sqrt(squares / result.points);
-  result.mean_per_m = sum / result.points;
+  result.rms_per_m = std::sqrt(squares / weights);
+  result.field_rms_per_m = std::sqrt(field_squares / weights);
   return result;
 }
 
