@@ -275,7 +275,7 @@ TEST(NetcdfSource, SaysWhatItIs) {
         all, [&](const auto& text) { return text.find(what) != std::string::npos; });
   };
   EXPECT_TRUE(says(info.assumptions, "synthetic"));
-  EXPECT_TRUE(says(info.facts, "clouds are cut off there"));
+  EXPECT_TRUE(says(info.facts, "cut off at the top of the data, at 9.0 km, in 100 %"));
 }
 
 }  // namespace

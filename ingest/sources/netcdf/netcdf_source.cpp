@@ -200,8 +200,8 @@ void NetcdfSource::state_facts(const Moment& first) {
   info_.facts.push_back(text("Finest voxels are %.4g km wide (at most) and %.4g m high.",
                              layout_.voxel_width_m / 1000, layout_.voxel_height_m));
   const glm::dvec2 range_m = forecast_->height_range_m();
-  info_.facts.push_back(text("The data reach from %.0f m to %.1f km; clouds end there.", range_m.x,
-                             range_m.y / 1000));
+  info_.facts.push_back(
+      text("The data reach from %.0f m to %.1f km.", range_m.x, range_m.y / 1000));
   // Cloud in the topmost layer is cut, whatever the model had above it.
   const ForecastColumns& columns = first.columns();
   const std::size_t nz = std::size_t(columns.nz);
@@ -214,7 +214,7 @@ void NetcdfSource::state_facts(const Moment& first) {
   }
   if (cut > 0)
     info_.facts.push_back(
-        text("The data end at %.1f km: clouds are cut off there, in %.0f %% of "
+        text("Clouds are cut off at the top of the data, at %.1f km, in %.0f %% of "
              "the cloudy columns.",
              range_m.y / 1000, 100.0 * double(cut) / double(cloudy)));
   info_.assumptions.push_back(
