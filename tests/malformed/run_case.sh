@@ -1,8 +1,8 @@
 #!/bin/sh
 # run_case.sh TABLE NAME BIN_DIR WORK_DIR: runs one row of the table and checks all of it:
-#   exit code; exactly one error message, and nothing else on standard error (none where the code is 0), which matches; no picture and
-#   no temporary left (a picture where the code is 0); no signal; 5 s of CPU, 60 s of patience for a
-#   machine that is busy with other things. Prints what it saw.
+#   exit code; exactly one error message, which matches (none where the code is 0); nothing beside it
+#   on standard error; no picture and no temporary left (a picture where the code is 0); no signal;
+#   5 s of CPU, 60 s of patience for a machine that is busy with other things. Prints what it saw.
 set -u
 table=$1 name=$2 bin=$3 work=$4
 PATH=$bin:$PATH
