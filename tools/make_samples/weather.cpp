@@ -16,11 +16,19 @@ double noise(double x_m, double y_m, double size_m, std::uint64_t seed) {
   return noise(x_m, y_m, 0.37 * size_m, size_m, seed);
 }
 
+// An edge as a model's mixing leaves it: over several cells, water falls off by orders of
+// magnitude, so that what is seen (a few 1e-6 kg/kg hide 2 km) bends between the cells and does not
+// follow them.
+double mixed_edge(double low, double high, double x) {
+  const double s = smooth_step(low, high, x);
+  return s * s * s;
+}
+
 // Water of a cloud from base to top: grows as in adiabatic ascent, and ends within `soft_m`.
 double adiabatic(double height_m, double base_m, double top_m, double soft_m, double fraction) {
   if (height_m <= base_m || height_m >= top_m + soft_m) return 0;
   return fraction * kCondensed_per_m * (height_m - base_m) *
-         smooth_step(top_m + soft_m, top_m - soft_m, height_m);
+         mixed_edge(top_m + soft_m, top_m - soft_m, height_m);
 }
 
 double frozen(double temperature_K) {
@@ -42,9 +50,9 @@ struct Weather::Tower {
 
 const std::vector<Weather::Tower>& Weather::towers() {
   static const std::vector<Tower> all = {
-      {34e3, 22e3, 6.2e3, 11.6e3, 62e3}, {61e3, -56e3, 5.2e3, 10.9e3, 38e3},
-      {25e3, 9e3, 4.2e3, 7.6e3, 0},      {18e3, -1e3, 3.7e3, 5.4e3, 0},
-      {12e3, -10e3, 3.3e3, 4.1e3, 0},    {52e3, -67e3, 3.6e3, 6.1e3, 0},
+      {34e3, 22e3, 7.6e3, 11.6e3, 60e3}, {61e3, -56e3, 6.2e3, 10.9e3, 38e3},
+      {22e3, 9e3, 5.2e3, 7.8e3, 0},      {14e3, -2e3, 4.4e3, 5.6e3, 0},
+      {8e3, -12e3, 3.8e3, 4.3e3, 0},     {50e3, -68e3, 4.2e3, 6.3e3, 0},
   };
   return all;
 }
@@ -79,19 +87,20 @@ Weather::Column Weather::column(double x_m, double y_m) const {
 
   // Fair-weather cumulus: streets along the wind, broken into cells.
   const double a = c.along_m - 6 * time_s_, b = c.across_m;
-  const double street = noise(a / 2.3, b, 9e3, 10);
-  const double cells = 0.55 * street + 0.85 * noise(a, b, 6.3e3, 11) + 0.5 * noise(a, b, 3.9e3, 12);
+  const double street = noise(a / 2, b, 15e3, 10);
+  const double cells =
+      0.55 * street + 0.95 * noise(a, b, 10.5e3, 11) + 0.4 * noise(a, b, 6.2e3, 12);
   const double heated = smooth_step(7e3, 20e3, s_m) * smooth_step(100e3, 74e3, s_m);
-  const double strength = cells - 0.46 - 0.9 * (1 - heated) + 0.55 * noise(a, b, 27e3, 13);
-  c.cumulus = smooth_step(0.0, 0.30, strength);
+  const double strength = cells - 0.44 - 0.9 * (1 - heated) + 0.55 * noise(a, b, 27e3, 13);
+  c.cumulus = mixed_edge(-0.15, 0.55, strength);
   c.cumulus_base_m = 1500 + 0.30 * std::max(0.0, c.ground.envelope_m - 500);
-  const double turret = 0.75 + 0.45 * noise(a, b, 4.3e3, 14);
-  c.cumulus_top_m = c.cumulus_base_m + 250 + 2100 * std::max(strength, 0.0) * turret;
+  const double turret = 0.8 + 0.45 * noise(a, b, 7e3, 14);
+  c.cumulus_top_m = c.cumulus_base_m + 350 + 2600 * std::max(strength + 0.05, 0.0) * turret;
 
   // Against the range: lifted where the ground rises towards the crest.
   const double crest = c.ground.envelope_m;
   const double windward = smooth_step(66e3, 80e3, s_m) * smooth_step(112e3, 100e3, s_m);
-  c.cap = windward * smooth_step(-0.35, 0.35, noise(a / 1.5, b, 17e3, 16) + 0.2);
+  c.cap = windward * smooth_step(-0.45, 0.55, noise(a / 1.5, b, 17e3, 16) + 0.1);
   c.cap_top_m = 1900 + 0.45 * crest + 600 * c.cap * (0.6 + 0.5 * noise(a, b, 5.5e3, 17));
   c.wave = smooth_step(104e3, 112e3, s_m) * std::cos(6.283185307 * (s_m - 116e3) / 15e3) *
                smooth_step(190e3, 120e3, s_m) +
@@ -142,12 +151,12 @@ Hydrometeors Weather::water(const Column& column, double height_m) const {
 
 void Weather::add_layers(const Column& c, double h, Hydrometeors& water) const {
   if (c.deck_top_m > c.deck_base_m)
-    water.cloud += adiabatic(h, c.deck_base_m, c.deck_top_m, 55, 0.72) *
-                   smooth_step(0, 90, c.deck_top_m - c.deck_base_m);
+    water.cloud += adiabatic(h, c.deck_base_m, c.deck_top_m, 110, 0.85) *
+                   mixed_edge(0, 260, c.deck_top_m - c.deck_base_m);
   if (c.cumulus > 0)
     // narrower towards the top
-    water.cloud += adiabatic(h, c.cumulus_base_m, c.cumulus_top_m, 150, 0.42) * c.cumulus;
-  if (c.cap > 0) water.cloud += adiabatic(h, 1950, c.cap_top_m, 130, 0.32) * c.cap;
+    water.cloud += adiabatic(h, c.cumulus_base_m, c.cumulus_top_m, 380, 0.6) * c.cumulus;
+  if (c.cap > 0) water.cloud += adiabatic(h, 1950, c.cap_top_m, 300, 0.4) * c.cap * c.cap * c.cap;
   if (c.wave > 0.4) {
     const double lens = smooth_step(0.4, 1.2, c.wave), middle_m = 5300 + 180 * lens;
     const double half_m = 120 + 260 * lens, off = (h - middle_m) / half_m;
@@ -162,11 +171,11 @@ void Weather::add_layers(const Column& c, double h, Hydrometeors& water) const {
 
 void Weather::add_tower(const Tower& tower, const Column& c, double h, Hydrometeors& water) const {
   const double base_m = c.cumulus_base_m, rise = (h - base_m) / (tower.top_m - base_m);
-  const double reach_m = 2.2 * tower.radius_m + 3e3;
+  const double reach_m = 2.2 * tower.radius_m + 5e3;
   const double lean_m = 0.16 * std::clamp(h - base_m, -1500.0, 8e3);
   const double dx = c.x_m - tower.x_m - 5 * time_s_ - lean_m * std::cos(kWindTurn_rad);
   const double dy = repeated(c.y_m - tower.y_m) - lean_m * std::sin(kWindTurn_rad);
-  if (std::abs(dx) > reach_m || std::abs(dy) > reach_m || rise > 1.25) return;
+  if (std::abs(dx) > reach_m || std::abs(dy) > reach_m || rise > 1.4) return;
   const double away_m = std::hypot(dx, dy), temperature = temperature_K(c, h);
 
   // Rain and snow fall through the lower half, downwind of the updraught.
@@ -182,16 +191,16 @@ void Weather::add_tower(const Tower& tower, const Column& c, double h, Hydromete
   }
   if (h <= base_m) return;
 
-  // A dome on a column; both bulge in turrets.
-  const double p = 2600 * noise(c.x_m - 5 * time_s_, c.y_m, 1.15 * h - 9 * time_s_, 6.4e3, 30) +
-                   1500 * noise(c.x_m - 5 * time_s_, c.y_m, 1.15 * h - 9 * time_s_, 3.9e3, 31);
-  const double waist =
-      1 - 0.20 * smooth_step(0.0, 0.35, rise) + 0.25 * smooth_step(0.35, 0.8, rise);
-  const double dome =
-      std::sqrt(std::max(0.0, 1 - std::pow(std::max(0.0, (rise - 0.62) / 0.42), 2)));
-  const double edge_m = tower.radius_m * waist * dome + 0.8 * p * (0.4 + 0.6 * dome);
-  const double inside = smooth_step(-1000, 1300, edge_m - away_m);
-  if (inside == 0 || dome == 0) return;
+  // A column under a dome, as one distance to its axis and its upper end; both bulge in turrets.
+  const double x_m = c.x_m - 5 * time_s_, up_m = 1.15 * h - 9 * time_s_;
+  const double bulge_m =
+      2000 * noise(x_m, c.y_m, up_m, 9e3, 30) + 1400 * noise(x_m, c.y_m, up_m, 5.6e3, 31);
+  const double radius_m = tower.radius_m * (1 - 0.12 * smooth_step(0.0, 0.35, rise) +
+                                            0.25 * smooth_step(0.35, 0.8, rise));
+  const double over_m = std::max(0.0, h - (tower.top_m - 0.5 * tower.radius_m - 600));
+  const double inside =
+      mixed_edge(-2800, 2400, radius_m - std::hypot(away_m, 2 * over_m) + bulge_m);
+  if (inside == 0) return;
   const double lifted = 0.55 * kCondensed_per_m * (h - base_m);
   const double left = std::min(lifted, 3.4e-3 - 2.3e-3 * smooth_step(3500, 10500, h));
   const double ice = frozen(temperature), amount = inside * std::min(left, lifted);
@@ -212,17 +221,17 @@ void Weather::add_anvil(const Tower& tower, const Column& c, double h, Hydromete
   // Spreads downwind like a plume, with a blunt upwind edge and fibres at its end.
   const double fringe =
       noise(along_m / 3.5, across_m, 5.2e3, 40) + 0.6 * noise(along_m, across_m, 4e3, 41);
-  const double half_m = 1.6 * tower.radius_m + 0.30 * std::max(along_m, 0.0);
+  const double half_m = 1.45 * tower.radius_m + 0.30 * std::max(along_m, 0.0);
   const double upwind_m = along_m + 1.75 * tower.radius_m;
   const double side = smooth_step(1.12, 0.62, std::abs(across_m) / half_m + 0.20 * fringe);
   const double length = smooth_step(1.05, 0.45, reach + 0.20 * fringe) *
                         smooth_step(-1500, 2500, upwind_m + 1500 * fringe);
-  const double there = side * length;
+  const double there = side * length * std::sqrt(side * length);
   if (there == 0) return;
   // Its top is level, with low mounds over the updraught; pouches hang from its underside.
   const double top_m = tower.top_m - 250 + 130 * noise(along_m, across_m, 5e3, 42) - 350 * reach;
   const double pouches = 1 + 0.28 * noise(along_m, across_m, 4.6e3, 43);
-  const double depth_m = (350 + 1900 * there * smooth_step(1.1, -0.1, reach)) * pouches;
+  const double depth_m = (350 + 2600 * there * smooth_step(1.1, -0.1, reach)) * pouches;
   const double inside = smooth_step(top_m + 200, top_m - 200, h) *
                         smooth_step(top_m - depth_m - 350, top_m - 0.45 * depth_m, h);
   const double amount = 0.6e-3 * inside * there * std::exp(-1.1 * std::max(reach, 0.0));

@@ -19,7 +19,7 @@ struct Hydrometeors {
 // and the line of towers that feeds them, and cirrus. Cloud water grows with height over its base
 // as the adiabatic does. Everything drifts with the wind of its height.
 //
-// Shapes are no smaller than 4 km, so that a grid of 2 km carries them.
+// Shapes are some 6 km wide and more, and their edges soft, as a model of 2 km carries them.
 class Weather {
  public:
   explicit Weather(double time_s);

@@ -50,7 +50,7 @@ std::vector<double> eta_interfaces(std::size_t count) {
   const double top_Pa = pressure_Pa(14.2e3);
   for (std::size_t k = 0; k <= count; ++k) {
     const double z = double(k) / double(count);
-    eta.push_back((pressure_Pa(14.2e3 * (0.2 * z + 0.8 * z * z)) - top_Pa) / (1e5 - top_Pa));
+    eta.push_back((pressure_Pa(14.2e3 * (0.42 * z + 0.58 * z * z)) - top_Pa) / (1e5 - top_Pa));
   }
   eta.front() = 1, eta.back() = 0;
   return eta;
