@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "air/air_lookup.h"
+#include "air/air_depth.h"
 #include "air/air_path.h"
 #include "air/gauss.h"
 #include "physics/physics_cpp.h"
@@ -9,7 +9,7 @@
 namespace nepho {
 namespace {
 
-constexpr int kNodes = 8;
+constexpr int kNodes = 5;
 
 // Integrals of the three profiles over u0 .. u1.
 glm::dvec3 amounts_m(const Air& air, const AirPath& path, double u0_m, double u1_m,
@@ -73,16 +73,23 @@ std::vector<double> air_cut_heights(const Air& air) {
   return heights_m;
 }
 
-glm::dvec3 air_optical_depth(const Air& air, double radius_m, double height_m, double mu,
-                             double length_m) {
-  const AirPath path(radius_m, height_m, mu);
-  const double top_m = path.top_m(air);
+AirDepth::AirDepth(const Air& air, double radius_m)
+    : air_(air), radius_m_(radius_m), cuts_m_(air_cut_heights(air)) {}
+
+glm::dvec3 AirDepth::operator()(double height_m, double mu, double length_m) const {
+  const AirPath path(radius_m_, height_m, mu);
+  const double top_m = path.top_m(air_);
   const double u0_m = std::max(path.start_m(), -top_m);
   const double u1_m = std::min(path.start_m() + length_m, top_m);
   if (!(u1_m > u0_m)) return glm::dvec3{0.0};
-  const glm::dvec3 amount_m = amounts_m(air, path, u0_m, u1_m, air_cut_heights(air));
-  return amount_m.x * air.rayleigh_per_m + amount_m.y * air.aerosol_extinction_per_m +
-         amount_m.z * air.ozone_per_m;
+  const glm::dvec3 amount_m = amounts_m(air_, path, u0_m, u1_m, cuts_m_);
+  return amount_m.x * air_.rayleigh_per_m + amount_m.y * air_.aerosol_extinction_per_m +
+         amount_m.z * air_.ozone_per_m;
+}
+
+glm::dvec3 air_optical_depth(const Air& air, double radius_m, double height_m, double mu,
+                             double length_m) {
+  return AirDepth(air, radius_m)(height_m, mu, length_m);
 }
 
 }  // namespace nepho

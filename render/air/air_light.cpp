@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "air/air_depth.h"
 #include "air/air_lookup.h"
 #include "air/air_path.h"
 #include "air/gauss.h"
@@ -23,8 +24,8 @@ constexpr int kSuns = 64, kHeights = 32;
 // Texels of the tables between two suns: light falls off by half an e-fold from one to the next in
 // twilight, and shaders interpolate linearly.
 constexpr int kBetween = 4;
-constexpr int kDepthWidth = 256, kDepthHeight = 64;
-constexpr int kSteepNodes = 3, kSideNodes = 6, kAzimuths = 6, kPanelNodes = 4;
+constexpr int kDepthWidth = 256, kDepthHeight = 192;
+constexpr int kSteepNodes = 3, kSideNodes = 8, kAzimuths = 6, kPanelNodes = 3;
 constexpr double kSteep = std::numbers::sqrt2 / 2;  // 45 degrees
 
 enum Band { kUp, kLow, kUnder, kDown, kBands };
@@ -59,6 +60,7 @@ class Solver {
         radius_m_(radius_m),
         albedo_(albedo),
         tables_(tables),
+        depth_(air, radius_m),
         lookup_(air_, radius_m, tables),
         fields_(kSuns * kHeights) {
     bundles_.resize(kHeights);
@@ -68,6 +70,7 @@ class Solver {
                air.rayleigh_scale_m / 2,
                1.5 * air.rayleigh_scale_m,
                3 * air.rayleigh_scale_m,
+               5 * air.rayleigh_scale_m,
                air.top_m};
     std::erase_if(cuts_m_, [&](double h_m) { return h_m > air.top_m; });
     std::ranges::sort(cuts_m_);
@@ -103,7 +106,7 @@ class Solver {
         double height_m = 0, mu = 0;
         f64::air_depth_place(radius_m_, air_.top_m, i / (kDepthWidth - 1.0),
                              j / (kDepthHeight - 1.0), height_m, mu);
-        const glm::dvec3 depth = air_optical_depth(air_, radius_m_, height_m, mu, 1e30);
+        const glm::dvec3 depth = depth_(height_m, mu, 1e30);
         for (int c = 0; c < 3; ++c)
           table.rgb[std::size_t(3 * (j * kDepthWidth + i) + c)] = float(depth[c]);
       }
@@ -137,9 +140,9 @@ class Solver {
     if (path.meets_ground()) {
       end_m = std::max(path.ground_m(), path.start_m());
       bundle.ground_m = end_m - path.start_m();
-      bundle.ground = glm::exp(-air_optical_depth(air_, radius_m_, height_m, mu, bundle.ground_m));
+      bundle.ground = glm::exp(-depth_(height_m, mu, bundle.ground_m));
     } else {
-      bundle.space = glm::exp(-air_optical_depth(air_, radius_m_, height_m, mu, 1e30));
+      bundle.space = glm::exp(-depth_(height_m, mu, 1e30));
     }
     const std::vector<double> cuts = path.cuts(path.start_m(), end_m, cuts_m_);
     for (std::size_t p = 1; p < cuts.size(); ++p)
@@ -149,8 +152,7 @@ class Solver {
         s.p2 = second_legendre(u_m / (radius_m_ + s.height_m));
         const AirDensity density = air_density(air_, s.height_m);
         const glm::dvec3 seen =
-            rule.weight[n] * length_m *
-            glm::exp(-air_optical_depth(air_, radius_m_, height_m, mu, s.along_m));
+            rule.weight[n] * length_m * glm::exp(-depth_(height_m, mu, s.along_m));
         s.rayleigh = density.rayleigh_per_m * seen;
         s.aerosol = density.aerosol_per_m * seen;
         bundle.samples.push_back(s);
@@ -292,6 +294,7 @@ class Solver {
   double radius_m_;
   glm::dvec3 albedo_;
   AirTables& tables_;
+  AirDepth depth_;
   AirLookup lookup_;
   Fields fields_;
   std::vector<std::vector<Bundle>> bundles_;  // [height]

@@ -19,10 +19,10 @@ struct AirTable {
 };
 
 struct AirTables {
-  // 256 x 64: optical depth from (mu, height) to the top, which interpolates better than its
+  // 256 x 192: optical depth from (mu, height) to the top, which interpolates better than its
   // exponential; meaningless below the horizon. air_depth_coordinates.
   AirTable depth;
-  // The others: 64 x 32, by (mu of the sun, height). air_light_coordinates.
+  // The others: 253 x 32, by (mu of the sun, height). air_light_coordinates.
   // Mean radiance over all directions of light that air or ground has scattered, and half the mean
   // of it times P2(mu): the source of the next orders, all of them together (air_emission). The
   // first alone, as Hillaire has it, is 4.5 % off in Rayleigh slabs; both are 1.3 % off.
