@@ -132,7 +132,8 @@ std::string explanation(const OpenedScene& opened, const RenderResult& result,
   out << "bytes: budget " << opened.scene.render.budget_mib << " MiB, used " << mib(inside)
       << " (atlas " << mib(report.atlas_bytes) << ", sun " << mib(report.sun_bytes) << ", nodes "
       << mib(report.node_bytes) << ", staging " << mib(report.staging_bytes) << "); apart: image "
-      << mib(report.image_bytes) << ", sources " << mib(report.source_bytes) << '\n';
+      << mib(report.image_bytes) << ", planet " << mib(report.planet_bytes) << ", sources "
+      << mib(report.source_bytes) << '\n';
   out << "passes (CPU):\n";
   for (const PassReport& pass : report.passes)
     out << format("  %-24s %8.3f s\n", pass.name.c_str(), pass.cpu_s);
