@@ -8,8 +8,8 @@ folder=$2
 shift 2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-"$@" --size 16x9 --probe-pixels 0 --explain -o "$scratch/picture.pfm" >"$scratch/said"
-sed -n '/^shader switches:/,/^[^ ]/s/^  /#define NEPHO_/p' "$scratch/said" >"$scratch/switches"
+"$@" --size 16x9 --probe-pixels 0 --explain-macros -o "$scratch/picture.pfm" >"$scratch/said"
+sed -n 's/^macro: /#define NEPHO_/p' "$scratch/said" >"$scratch/switches"
 [ -s "$scratch/switches" ] || { echo "parse: the program names no switches"; exit 1; }
 failed=0
 count=0
