@@ -12,15 +12,23 @@ struct Span {
   vec3 k0, k1, k2;  // extinction, 1/m
   vec3 j0, j1, j2;  // emission, W m-3 sr-1 nm-1; with a sun map: of the sun's own light
 #ifdef NEPHO_SUN_MAP
-  vec3 m0, m1, m2;     // of all other light
-  float lit_a, lit_b;  // part of the sun's light that clouds leave, mean over each half
+  vec3 m0, m1, m2;  // of all other light
+  float lit;        // part of the sun's light that clouds leave, mean over the span
+#endif
+#ifdef NEPHO_CLOUDS
+  vec3 sun0, sun1, sun2;  // across its beam
 #endif
 };
 Span span;
 float air_enter_m, air_leave_m;            // where the ray is in the air
 float rayleigh_to_eye, aerosol_to_eye;  // phase functions
 
-void air_knot(float t_m, out vec3 k, out vec3 j, out vec3 more) {
+struct Knot {
+  vec3 k, j, m, sun;
+  vec2 light;  // place in light_table
+};
+Knot air_knot(float t_m) {
+  Knot knot;
   float height_m, mu, mu_sun;
   planet_place(t_m, height_m, mu, mu_sun);
   float molecules = air_exponential(height_m, planet.rayleigh_scale_m);
@@ -30,21 +38,28 @@ void air_knot(float t_m, out vec3 k, out vec3 j, out vec3 more) {
   molecules *= 0.5;
 #endif
   vec3 rayleigh = molecules * vec_of(planet.rayleigh_per_m);
-  k = rayleigh + aerosol * vec_of(planet.aerosol_per_m) + ozone * vec_of(planet.ozone_per_m);
-  vec3 sun = sun_in_air(height_m, mu_sun);
-  vec2 place = light_place(height_m, mu_sun);
-  vec3 multiple = air_light(place, LIGHT_MULTIPLE), p2 = air_light(place, LIGHT_MULTIPLE_P2);
+  knot.k = rayleigh + aerosol * vec_of(planet.aerosol_per_m) + ozone * vec_of(planet.ozone_per_m);
+  knot.sun = sun_in_air(height_m, mu_sun);
+  knot.light = light_place(height_m, mu_sun);
+  vec3 multiple = air_light(knot.light, LIGHT_MULTIPLE), p2 = air_light(knot.light, LIGHT_MULTIPLE_P2);
   for (int c = 0; c < 3; ++c) {
     float a = aerosol * planet.aerosol_scattering_per_m[c];
-    j[c] = air_emission(rayleigh[c], a, sun[c], rayleigh_to_eye, aerosol_to_eye, 0.0, 0.0, mu);
-    more[c] = air_emission(rayleigh[c], a, 0.0, rayleigh_to_eye, aerosol_to_eye, multiple[c], p2[c], mu);
+    knot.j[c] = air_emission(rayleigh[c], a, knot.sun[c], rayleigh_to_eye, aerosol_to_eye, 0.0, 0.0, mu);
+    knot.m[c] = air_emission(rayleigh[c], a, 0.0, rayleigh_to_eye, aerosol_to_eye, multiple[c], p2[c], mu);
   }
+#ifndef NEPHO_SUN_MAP
+  knot.j += knot.m;
+#endif
+  return knot;
 }
 
 #ifdef NEPHO_SUN_MAP
+// Six places, so that an edge that comes near shows no steps.
 float lit_mean(float begin_m, float length_m) {
-  return (sun_visible(begin_m + length_m * (1.0 / 6.0)) + sun_visible(begin_m + length_m * 0.5) +
-          sun_visible(begin_m + length_m * (5.0 / 6.0))) * (1.0 / 3.0);
+  float sum = 0.0;
+  for (int place = 0; place < 6; ++place)
+    sum += sun_visible(begin_m + length_m * (1.0 / 6.0) * (float(place) + 0.5));
+  return sum * (1.0 / 6.0);
 }
 #endif
 
@@ -54,7 +69,7 @@ float span_length(float t_m) {
   float height_m, mu, mu_sun;
   planet_place(t_m, height_m, mu, mu_sun);
   float up_m = max(height_m, 0.0), above = (up_m + 1000.0) / (1.0 + up_m * (1.0 / 30e3));
-  const float growth = 0.4;
+  const float growth = 0.5;
   float steep = mu * (mu > 0.0 ? 1.0 : 1.0 + growth) / (growth * above);
   float thick = (planet.rayleigh_per_m[2] * air_exponential(height_m, planet.rayleigh_scale_m) +
                  planet.aerosol_per_m[2] * air_exponential(height_m, planet.aerosol_scale_m)) / 1.2;
@@ -66,7 +81,7 @@ float span_length(float t_m) {
   inverse2 += clamp(-50.0 * mu_sun, 0.0, 1.0) * edge * edge;
 #ifdef NEPHO_SUN_MAP
   if (height_m < planet.cloud_top_m) {
-    float near = 1.0 / (0.25 * t_m + 400.0);
+    float near = 1.0 / (0.3 * t_m + 500.0);
     inverse2 += near * near;
   }
 #endif
@@ -81,6 +96,17 @@ void next_span() {
   span.has_air = t >= air_enter_m && t < air_leave_m;
   if (!span.has_air) {
     span.end_m = t < air_enter_m ? air_enter_m : FAR;
+    span.k0 = span.k1 = span.k2 = span.j0 = span.j1 = span.j2 = vec3(0.0);
+#ifdef NEPHO_SUN_MAP
+    span.m0 = span.m1 = span.m2 = vec3(0.0);
+    span.lit = 1.0;
+#endif
+#ifdef NEPHO_CLOUDS
+    // Over the air, if ever.
+    float height_m, mu, mu_sun;
+    planet_place(t, height_m, mu, mu_sun);
+    span.sun0 = span.sun1 = span.sun2 = planet_sun_part(height_m, mu_sun) * vec_of(frame.sun_irradiance);
+#endif
     return;
   }
   span.end_m = min(t + span_length(t), air_leave_m);
@@ -89,35 +115,40 @@ void next_span() {
 #ifdef NEPHO_SUN_MAP
   span.m0 = span.m2;
 #endif
-  for (int knot = first ? 0 : 1; knot < 3; ++knot) {  // a loop: one copy of the look-ups to compile
-    vec3 k, j, m;
-    air_knot(t + 0.5 * float(knot) * (span.end_m - t), k, j, m);
-#ifndef NEPHO_SUN_MAP
-    j += m;
+#ifdef NEPHO_CLOUDS
+  span.sun0 = span.sun2;
 #endif
-    if (knot == 0) {
-      span.k0 = k;
-      span.j0 = j;
-    } else if (knot == 1) {
-      span.k1 = k;
-      span.j1 = j;
+  for (int at = first ? 0 : 1; at < 3; ++at) {  // a loop: one copy of the look-ups to compile
+    Knot knot = air_knot(t + 0.5 * float(at) * (span.end_m - t));
+    if (at == 0) {
+      span.k0 = knot.k;
+      span.j0 = knot.j;
+    } else if (at == 1) {
+      span.k1 = knot.k;
+      span.j1 = knot.j;
     } else {
-      span.k2 = k;
-      span.j2 = j;
+      span.k2 = knot.k;
+      span.j2 = knot.j;
     }
 #ifdef NEPHO_SUN_MAP
-    if (knot == 0)
-      span.m0 = m;
-    else if (knot == 1)
-      span.m1 = m;
+    if (at == 0)
+      span.m0 = knot.m;
+    else if (at == 1)
+      span.m1 = knot.m;
     else
-      span.m2 = m;
+      span.m2 = knot.m;
+#endif
+#ifdef NEPHO_CLOUDS
+    if (at == 0)
+      span.sun0 = knot.sun;
+    else if (at == 1)
+      span.sun1 = knot.sun;
+    else
+      span.sun2 = knot.sun;
 #endif
   }
 #ifdef NEPHO_SUN_MAP
-  float half_m = 0.5 * (span.end_m - t);
-  span.lit_a = lit_mean(t, half_m);
-  span.lit_b = lit_mean(t + half_m, half_m);
+  span.lit = lit_mean(t, span.end_m - t);
 #endif
 }
 
@@ -148,41 +179,23 @@ vec3 span_weights(float t_m) {
   return vec3((1.0 - u) * (1.0 - 2.0 * u), 4.0 * u * (1.0 - u), u * (2.0 * u - 1.0));
 }
 vec3 air_extinction(vec3 w) { return max(w.x * span.k0 + w.y * span.k1 + w.z * span.k2, vec3(0.0)); }
-vec3 air_emission_at(vec3 w, float lit) {
+vec3 air_emission_at(vec3 w) {
   vec3 j = max(w.x * span.j0 + w.y * span.j1 + w.z * span.j2, vec3(0.0));
 #ifdef NEPHO_SUN_MAP
-  j = lit * j + max(w.x * span.m0 + w.y * span.m1 + w.z * span.m2, vec3(0.0));
+  j = span.lit * j + max(w.x * span.m0 + w.y * span.m1 + w.z * span.m2, vec3(0.0));
 #endif
   return j;
 }
-float span_middle() { return 0.5 * (span.begin_m + span.end_m); }
-float lit_at(float t_m) {
-#ifdef NEPHO_SUN_MAP
-  return t_m < span_middle() ? span.lit_a : span.lit_b;
-#else
-  return 1.0;
-#endif
-}
 
-// Air alone, within one half of the span: Simpson on emission times transmittance.
-void add_air_part(inout Seen seen, float t0, float t1, float lit) {
+// Air alone, within the span: Simpson on emission times transmittance.
+void add_air(inout Seen seen, float t0, float t1) {
+  if (!span.has_air) return;
   float d = t1 - t0;
   vec3 w0 = span_weights(t0), w1 = span_weights(0.5 * (t0 + t1)), w2 = span_weights(t1);
   vec3 k0 = air_extinction(w0), k1 = air_extinction(w1), k2 = air_extinction(w2);
   vec3 half_way = exp(-(d * (1.0 / 24.0)) * (5.0 * k0 + 8.0 * k1 - k2));
   vec3 through = exp(-(d * (1.0 / 6.0)) * (k0 + 4.0 * k1 + k2));
   seen.radiance += seen.transmittance * (d * (1.0 / 6.0)) *
-                   (air_emission_at(w0, lit) + 4.0 * half_way * air_emission_at(w1, lit) +
-                    through * air_emission_at(w2, lit));
+                   (air_emission_at(w0) + 4.0 * half_way * air_emission_at(w1) + through * air_emission_at(w2));
   seen.transmittance *= through;
-}
-void add_air(inout Seen seen, float t0, float t1) {
-  if (!span.has_air || t1 <= t0) return;
-#ifdef NEPHO_SUN_MAP
-  float middle = span_middle();
-  if (t0 < middle) add_air_part(seen, t0, min(t1, middle), span.lit_a);
-  if (t1 > middle) add_air_part(seen, max(t0, middle), t1, span.lit_b);
-#else
-  add_air_part(seen, t0, t1, 1.0);
-#endif
 }

@@ -80,17 +80,36 @@ void begin_lights() {
 #ifdef NEPHO_GROUND
 // What arrives at the last place asked for: across the sun's beam, and from the sky.
 vec3 sun_light, light_up, light_side, light_down;
+#if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
+// Sky light at both ends of a segment of cloud within a span; linear between them.
+float sky_begin_m, sky_end_m;
+vec3 sky_up[2], sky_side[2], sky_down[2];
+
+void begin_sky_light(float begin_m, float end_m) {
+  sky_begin_m = begin_m;
+  sky_end_m = end_m;
+  for (int end = 0; end < 2; ++end) {
+    float height_m, mu, mu_sun;
+    planet_place(end == 0 ? begin_m : end_m, height_m, mu, mu_sun);
+    vec2 place = light_place(height_m, mu_sun);
+    sky_up[end] = air_light(place, LIGHT_UP);
+    sky_side[end] = air_light(place, LIGHT_SIDE);
+    sky_down[end] = air_light(place, LIGHT_DOWN);
+  }
+}
+#endif
 
 void light_at(float t_m) {
+#if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
+  vec3 w = span_weights(t_m);
+  sun_light = max(w.x * span.sun0 + w.y * span.sun1 + w.z * span.sun2, vec3(0.0));
+  float u = clamp((t_m - sky_begin_m) / max(sky_end_m - sky_begin_m, 1e-3), 0.0, 1.0);
+  light_up = mix(sky_up[0], sky_up[1], u);
+  light_side = mix(sky_side[0], sky_side[1], u);
+  light_down = mix(sky_down[0], sky_down[1], u);
+#else
   float height_m, mu, mu_sun;
   planet_place(t_m, height_m, mu, mu_sun);
-#ifdef NEPHO_AIR
-  sun_light = sun_in_air(height_m, mu_sun);
-  vec2 place = light_place(height_m, mu_sun);
-  light_up = air_light(place, LIGHT_UP);
-  light_side = air_light(place, LIGHT_SIDE);
-  light_down = air_light(place, LIGHT_DOWN);
-#else
   sun_light = planet_sun_part(height_m, mu_sun) * vec_of(frame.sun_irradiance);
 #endif
 }

@@ -14,43 +14,45 @@ Seen see(out float ground_m) {
 #ifdef NEPHO_AIR
   begin_air(ground_m);
 #endif
-  bool lit = false;
-  vec3 s0 = vec3(0.0);
-  // Accounted for up to t; without extinction of clouds up to `clear`.
+  begin_lights();
+  float last_m = min(ground_m, FAR);
+  // Accounted for up to t; no cloud before `clear`.
   float t = 0.0, clear = 0.0;
   int ended = 0;
+  // Loops within one: llvmpipe runs what is in branches at every turn, and a span of air costs more
+  // than a leaf.
   while (ended == 0) {
+    bool empty = true, smooth_ = true;
+    float leave = FAR;
+    int looking = 1;
+    while (looking == 1) {
+      leave = settle_walks(clear, empty, smooth_);
+      empty = empty || leave >= FAR;
+      if (empty) clear = min(leave, last_m);
+      if (!empty || clear >= last_m) looking = 0;
+    }
 #ifdef NEPHO_AIR
-    if (t >= span.end_m) next_span();
+    while ((t < clear || t >= span.end_m) && t < last_m && passed(seen) >= frame.least_transmittance) {
+      if (t >= span.end_m) next_span();
+      float next = min(span.end_m, clear);
+      add_air(seen, t, next);
+      t = next;
+    }
     float span_end = span.end_m;
 #else
+    t = clear;
     float span_end = FAR;
 #endif
-    bool empty, smooth_;
-    float leave = settle_walks(clear, empty, smooth_);
-    float stop = min(min(leave, span_end), ground_m);
-    if (empty || leave >= FAR) {
-      lit = false;
-      if (stop >= min(span_end, ground_m)) {
-#ifdef NEPHO_AIR
-        add_air(seen, t, min(stop, air_leave_m));
+    if (!empty && t < last_m && passed(seen) >= frame.least_transmittance) {
+      float stop = min(min(leave, span_end), last_m);
+#if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
+      begin_sky_light(t, stop);
 #endif
-        t = stop;
-      }
-    } else {
-#ifdef NEPHO_AIR
-      add_air(seen, t, clear);
-#endif
-      if (!lit) {
-        begin_lights();
-        lit = true;
-      }
-      s0 = total_source_at(clear);
-      march_segment(seen, clear, stop, smooth_, s0);
-      t = stop;
+      vec3 s0 = total_source_at(t);
+      march_segment(seen, t, stop, smooth_, s0);
+      t = clear = stop;
     }
-    clear = stop;
-    if (stop >= FAR || stop >= ground_m || passed(seen) < frame.least_transmittance) ended = 1;
+    if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
   }
   count_overrun(ended);
   return seen;

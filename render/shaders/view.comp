@@ -46,7 +46,7 @@ void add_step(inout Seen seen, vec3 s0, vec3 s1, float tau, float t, float step_
   vec3 weights = span_weights(t + 0.5 * step_m);
   vec3 half_way = exp(-(0.5 * step_m) * air_extinction(weights));
   seen.transmittance *= half_way;
-  seen.radiance += seen.transmittance * step_m * e0 * air_emission_at(weights, lit_at(t + 0.5 * step_m));
+  seen.radiance += seen.transmittance * step_m * e0 * air_emission_at(weights);
 #endif
   seen.radiance += seen.transmittance * tau * (s0 * e0 + (s1 - s0) * w1);
 #ifdef NEPHO_MUTANT_EULER
@@ -121,21 +121,16 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_, inout vec3
 Seen see() {
   Seen seen = Seen(vec3(0.0), 1.0, 0.0);
   float end_m, t = begin_walks(end_m);
-  bool lit = false;
   vec3 s0 = vec3(0.0);
   float end = 0.0;
+  // Before the loop: llvmpipe runs what is in its branches at every turn.
+  begin_lights();
   int ended = t < end_m ? 0 : 1;
   while (end < FAR && t < end_m && seen.transmittance >= frame.least_transmittance) {
     bool empty, smooth_;
     end = settle_walks(t, empty, smooth_);
     float stop = min(end, end_m);
-    if (empty || end >= FAR) {
-      lit = false;
-    } else {
-      if (!lit) {
-        begin_lights();
-        lit = true;
-      }
+    if (!empty && end < FAR) {
       s0 = total_source_at(t);
       march_segment(seen, t, stop, smooth_, s0);
     }
