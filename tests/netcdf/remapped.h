@@ -157,6 +157,7 @@ inline double looked_up_depth(const Remapped& r, const GridSearch& search,
   // Where clouds are.
   const double reference_q = (3000 - r.chart().bottom_m()) / r.chart().thickness_m();
   double sum = 0, total = 0;
+  GridSearch::Found found;
   for (const Column& name : r.chart().names(column, n))
     for (int b = -kPoints; b < kPoints; ++b)
       for (int a = -kPoints; a < kPoints; ++a) {
@@ -169,10 +170,10 @@ inline double looked_up_depth(const Remapped& r, const GridSearch& search,
                               std::pow(1 + x * x + y * y, 1.5);
         total += weight;
         const GeodeticPoint p = geodetic_point(r.chart().body(), r.chart().ecef_m({name.root, q}));
-        const auto [at, off] = search.find({p.latitude_deg, p.longitude_deg});
-        if (off > 0) continue;
-        const int i = std::min(int(at.x), r.columns.nx - 1),
-                  j = std::min(int(at.y), r.columns.ny - 1);
+        found = search.find({p.latitude_deg, p.longitude_deg}, found.at);
+        if (found.off_cells > 0) continue;
+        const int i = std::min(int(found.at.x), r.columns.nx - 1),
+                  j = std::min(int(found.at.y), r.columns.ny - 1);
         sum += weight * depth_of_cell[std::size_t(j) * std::size_t(r.columns.nx) + std::size_t(i)];
       }
   return sum / total;
@@ -180,7 +181,7 @@ inline double looked_up_depth(const Remapped& r, const GridSearch& search,
 
 // Column optical depths against the field under the same hats: rms of the difference over that of
 // the depth, over some columns; edges and corners of the cube first, where there are any.
-inline double column_rms(const Remapped& r, std::size_t most = 80) {
+inline double column_rms(const Remapped& r, std::size_t most = 60) {
   const GridSearch search(r.grid);
   const double a = r.chart().body().equatorial_m;
   std::vector<double> depth;

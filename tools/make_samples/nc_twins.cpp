@@ -275,8 +275,14 @@ std::vector<NcTwin> refused() {
               }),
       changed("nc_too_much_water", "g/kg that call themselves kg/kg",
               [](TinyFile& f) { f.scale("clw", 1000); }),
-      changed("nc_levels_disorder", "levels that neither rise nor fall",
-              [](TinyFile& f) { std::swap(f.values.at("height")[3], f.values.at("height")[7]); }),
+      changed("nc_levels_disorder", "heights that neither rise nor fall, and nothing else to go by",
+              [](TinyFile& f) {
+                std::swap(f.values.at("height")[3], f.values.at("height")[7]);
+                drop(f, "pa"), drop(f, "ta");
+                f.layout.set_note("clw", {"units", "kg m-3"});
+                f.layout.set_note(
+                    "clw", {"standard_name", "mass_concentration_of_cloud_liquid_water_in_air"});
+              }),
       changed("nc_lat_range", "latitudes beyond the pole",
               [](TinyFile& f) {
                 for (double& v : f.values.at("lat")) v += 43;

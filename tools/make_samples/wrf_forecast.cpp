@@ -16,7 +16,7 @@ namespace {
 constexpr double kGravity = 9.81, kGasDry = 287.0, kHeatDry = 1004.5;  // WRF's own
 constexpr double kTop_Pa = 14000, kSeaLevel_Pa = 101400;
 constexpr double kTruelat1_deg = 42, kTruelat2_deg = 46, kRefLat_deg = 43.6, kStandLon_deg = -122.4;
-constexpr double kStartMinutes = 720;  // of the first time since the model's start
+constexpr double kStartMinutes = 780;  // of the first time since the model's start
 constexpr auto kModelStart =
     std::chrono::sys_days(std::chrono::year(2024) / 7 / 19) + std::chrono::hours(12);
 

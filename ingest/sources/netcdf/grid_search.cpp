@@ -133,7 +133,8 @@ GridSearch::Found GridSearch::find(glm::dvec2 lat_lon_deg) const {
 
 GridSearch::Found GridSearch::find(glm::dvec2 lat_lon_deg, glm::dvec2 start) const {
   const glm::dvec3 wanted = unit_vector(lat_lon_deg);
-  return near_pole(wanted, polish(wanted, walk(wanted, inside(start), 1)));
+  const Found found = polish(wanted, inside(start));
+  return found.off_cells > 0 ? find(lat_lon_deg) : found;
 }
 
 }  // namespace nepho::netcdf

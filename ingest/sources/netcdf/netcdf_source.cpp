@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <list>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "geo/place.h"
@@ -49,9 +51,7 @@ class Moment {
 
   const SparsePyramid& total() const { return total_; }
   const SparsePyramid* ice() const { return ice_ ? &*ice_ : nullptr; }
-  const GridSearch& search() const { return search_; }
   const ForecastColumns& columns() const { return columns_; }
-  const HatRemap& remap() const { return remap_; }
 
   // The model's own cells; of cubes, what they sample.
   double point_extinction_per_m(const Ellipsoid& body, const glm::dvec3& ecef_m) const {

@@ -117,9 +117,9 @@ TEST(WrfSample, StaggeringUnitsAndTimes) {
   EXPECT_EQ(f.note("P", "units"), "Pa");
   EXPECT_EQ(f.note("T", "units"), "K");
   EXPECT_EQ(f.note("HGT", "units"), "m");
-  EXPECT_EQ(f.text("Times"), "2024-07-20_00:00:00");
+  EXPECT_EQ(f.text("Times"), "2024-07-20_01:00:00");
   EXPECT_EQ(f.note("XTIME", "units"), "minutes since 2024-07-19 12:00:00");
-  EXPECT_EQ(f.values("XTIME"), std::vector<double>{720});
+  EXPECT_EQ(f.values("XTIME"), std::vector<double>{780});
 }
 
 TEST(WrfSample, StandsOnItsGround) {
@@ -200,7 +200,7 @@ TEST(WrfSample, AMovingNestMoves) {
   // 18 km east and north are two cells: the later corner is the earlier third diagonal place
   EXPECT_NEAR(lat[48], lat[2 * 8 + 2], 1e-4);
   EXPECT_NEAR(lon[48], lon[2 * 8 + 2], 1e-4);
-  EXPECT_EQ(file.text("Times"), "2024-07-20_00:00:002024-07-20_01:00:00");
+  EXPECT_EQ(file.text("Times"), "2024-07-20_01:00:002024-07-20_02:00:00");
 }
 
 }  // namespace
