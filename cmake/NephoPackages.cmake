@@ -5,6 +5,7 @@ function(nepho_package_option name what)
   set_property(CACHE NEPHO_WITH_${name} PROPERTY STRINGS AUTO ON OFF)
 endfunction()
 nepho_package_option(OPENVDB "OpenVDB files (.vdb)")
+nepho_package_option(NETCDF "Forecasts in NetCDF files (.nc)")
 nepho_package_option(OIIO "PNG, EXR and HDR pictures through OpenImageIO")
 
 # nepho_package_missing(OPENVDB "text"): says so, or stops.

@@ -192,6 +192,9 @@ float optical_depth_ahead() {
       float k0 = total_extinction_at(t);
       if (smooth_) {
         tau += k0 * (end - t);
+#ifdef NEPHO_NOTE_DEPTH
+        note_depth(k0 * (end - t), 0.5 * (t + end));
+#endif
       } else {
         float h = NEPHO_SUN_STEP * cell_length(0.5 * (t + end));
         while (t < end) {
@@ -207,6 +210,9 @@ float optical_depth_ahead() {
           for (int s = 0; s < sub_steps; ++s) {
             float k_mid = total_extinction_at(t + 0.5 * sub), k1 = total_extinction_at(t + sub);
             tau += simpson_optical_depth(k0, k_mid, k1, sub);
+#ifdef NEPHO_NOTE_DEPTH
+            note_depth(simpson_optical_depth(k0, k_mid, k1, sub), t + 0.5 * sub);
+#endif
             k0 = k1;
             t += sub;
           }

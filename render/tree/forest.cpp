@@ -37,13 +37,16 @@ struct Candidate {
   }
 };
 
-TreeNode leaf_from(NodeKey key, const NodeSummary& summary) {
+// `whole`: what is constant needs no brick. Not where ice is told apart: its part of a constant is
+// only in bricks.
+TreeNode leaf_from(NodeKey key, const NodeSummary& summary, bool whole) {
   TreeNode node;
   node.key = key;
   node.kind = NodeKind::kBrick;
   if (summary.constant) {
     node.constant_per_m = summary.constant_extinction_per_m;
-    node.kind = node.constant_per_m > 0 ? NodeKind::kConstant : NodeKind::kEmpty;
+    node.kind = node.constant_per_m > 0 ? (whole ? NodeKind::kConstant : NodeKind::kBrick)
+                                        : NodeKind::kEmpty;
   } else if (summary.empty) {
     node.kind = NodeKind::kEmpty;
   }
@@ -116,7 +119,7 @@ class Refiner {
   // Adds a leaf to its tree, and to the queue where a split of it is worth something.
   void append(std::uint32_t volume, NodeKey key, const NodeSummary& summary) {
     VolumeTree& tree = forest_.volumes[volume];
-    const TreeNode node = leaf_from(key, summary);
+    const TreeNode node = leaf_from(key, summary, !has_ice(tree.source->info()));
     const auto index = std::uint32_t(tree.nodes.size());
     tree.nodes.push_back(node);
     tree.finest_level_used = std::max(tree.finest_level_used, key.level());
@@ -164,11 +167,12 @@ class Refiner {
     const Candidate first = *queue_.begin();
     const std::vector<NodeSummary>& summaries = children_of(first);
     const std::vector<NodeKey> keys = lattice(first.volume).children(first.key);
+    const bool whole = !has_ice(forest_.volumes[first.volume].source->info());
     Counts after = counts_;
     after.nodes += keys.size();
     count(after, forest_.volumes[first.volume].nodes[first.node].kind, -1);
     for (std::size_t c = 0; c < keys.size(); ++c)
-      count(after, leaf_from(keys[c], summaries[c]).kind, +1);
+      count(after, leaf_from(keys[c], summaries[c], whole).kind, +1);
 #if !defined(NEPHO_MUTANT_FOREST_BUDGET)
     if (double(cost(after)) > budget_bytes_) return false;
 #endif

@@ -99,6 +99,9 @@ ViewMetric::NodeView ViewMetric::view(const VolumeInfo& info, NodeKey key) const
     q = chart->inverse_edges() * (eye_m - chart->origin_m());
   } else {
     q = static_cast<const ShellChart&>(*info.chart).coordinates(key.root(), eye_m);
+    // An eye on the axis of a neighbouring face has no angle on this one: any is as near.
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::isnan(q[axis])) q[axis] = 0.5;
   }
   const glm::dvec3 clamped = glm::clamp(q, box.low, box.high);
   double distance_m = glm::length(info.chart->ecef_m({key.root(), clamped}) - eye_m);

@@ -20,6 +20,7 @@ check() {  # check FOLDERS FIND_REGEX INCLUDE_REGEX, FOLDERS separated by |
   echo "one_home: $1: $(echo "$homes" | wc -w) find it, $(echo "$users" | wc -w) include it"
 }
 check 'ingest/sources/openvdb|tests/openvdb' 'find_package\(OpenVDB' 'openvdb/'
+check 'ingest/sources/netcdf|tests/netcdf' 'find_package\(netCDF' '(netcdf|hdf5)\.h'
 check 'tools/image/oiio' 'find_(package|path)\(.*OpenImageIO' 'OpenImageIO/'
 check 'ingest/geo|tests' 'find_package\(GeographicLib' 'GeographicLib/'
 check 'tools/sun' 'find_path\(LIBNOVA' 'libnova/'

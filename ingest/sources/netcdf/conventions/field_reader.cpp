@@ -1,0 +1,81 @@
+#include "conventions/field_reader.h"
+
+#include <algorithm>
+#include <array>
+
+namespace nepho::netcdf {
+namespace {
+
+bool has(const NcVariable& variable, int dimension) {
+  return std::ranges::find(variable.dimensions, dimension) != variable.dimensions.end();
+}
+
+}  // namespace
+
+bool FieldReader::is_field(const NcVariable& variable, int z) const {
+  return variable.numeric() && has(variable, z) && has(variable, y) && has(variable, x) &&
+         std::ranges::all_of(variable.dimensions, [&](int d) {
+           return d == time || d == z || d == y || d == x || file->size(d) == 1;
+         });
+}
+
+bool FieldReader::is_surface(const NcVariable& variable) const {
+  return variable.numeric() && has(variable, y) && has(variable, x) &&
+         std::ranges::all_of(variable.dimensions, [&](int d) {
+           return d == time || d == y || d == x || file->size(d) == 1;
+         });
+}
+
+std::vector<float> FieldReader::read(const NcVariable& variable, int z, bool from_top,
+                                     std::size_t time_index, int first, int count) const {
+  const std::size_t rank = variable.dimensions.size();
+  std::vector<std::size_t> start(rank, 0), counts(rank, 1);
+  for (std::size_t d = 0; d < rank; ++d) {
+    const int id = variable.dimensions[d];
+    if (id == time) start[d] = time_index;
+    if (id == y) counts[d] = std::size_t(ny);
+    if (id == x) counts[d] = std::size_t(nx);
+    if (id == z) {
+      counts[d] = std::size_t(count);
+      start[d] = std::size_t(from_top ? int(file->size(z)) - first - count : first);
+    }
+  }
+  std::vector<float> values = file->read_floats(variable, start, counts);
+  // Strides of z, y, x in what was read.
+  std::array<std::size_t, 3> stride = {0, 0, 0};
+  std::size_t step = 1;
+  for (std::size_t d = rank; d-- > 0;) {
+    const int id = variable.dimensions[d];
+    for (const auto& [axis, dimension] : {std::pair{0, z}, {1, y}, {2, x}})
+      if (id == dimension) stride[std::size_t(axis)] = step;
+    step *= counts[d];
+  }
+  const std::size_t row = std::size_t(nx), plane = row * std::size_t(ny);
+  const bool in_order = stride[2] == 1 && stride[1] == row && stride[0] == (z < 0 ? 0 : plane);
+  if (in_order && (!from_top || count == 1)) return values;
+  std::vector<float> ordered(values.size());
+  for (int k = 0; k < count; ++k) {
+    const std::size_t from = std::size_t(from_top ? count - 1 - k : k) * stride[0];
+    for (std::size_t j = 0; j < std::size_t(ny); ++j)
+      for (std::size_t i = 0; i < row; ++i)
+        ordered[std::size_t(k) * plane + j * row + i] =
+            values[from + j * stride[1] + i * stride[2]];
+  }
+  return ordered;
+}
+
+std::vector<float> FieldReader::levels(const NcVariable& variable, int z, bool from_top,
+                                       std::size_t time_index, int first, int count) const {
+  return read(variable, z, from_top, time_index, first, count);
+}
+
+std::vector<float> FieldReader::field(const NcVariable& variable, int z, bool from_top,
+                                      std::size_t time_index) const {
+  return read(variable, z, from_top, time_index, 0, int(file->size(z)));
+}
+
+std::vector<float> FieldReader::surface(const NcVariable& variable, std::size_t time_index) const {
+  return read(variable, -1, false, time_index, 0, 1);
+}
+
+}  // namespace nepho::netcdf

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "nc_file.h"
+
+namespace nepho::netcdf {
+
+// Which dimension is which, and the reading of variables in one order whatever theirs is:
+// [k][j][i], k from the ground up, j and i in the file's own direction.
+struct FieldReader {
+  std::shared_ptr<const NcFile> file;
+  int time = -1, y = -1, x = -1;  // dimensions; time may be absent
+  int nx = 0, ny = 0;             // columns used: nx leaves out a repeated column of a whole turn
+
+  // Has `z`, y and x, and nothing else of more than one index but time.
+  bool is_field(const NcVariable& variable, int z) const;
+  bool is_surface(const NcVariable& variable) const;
+
+  // Levels [first, first + count), counted from the ground; from_top: the file's first is the
+  // highest. Times are indices of the file; variables without time are the same at all.
+  std::vector<float> levels(const NcVariable& variable, int z, bool from_top,
+                            std::size_t time_index, int first, int count) const;
+  std::vector<float> field(const NcVariable& variable, int z, bool from_top,
+                           std::size_t time_index) const;
+  std::vector<float> surface(const NcVariable& variable, std::size_t time_index) const;
+
+ private:
+  std::vector<float> read(const NcVariable& variable, int z, bool from_top, std::size_t time_index,
+                          int first, int count) const;
+};
+
+}  // namespace nepho::netcdf

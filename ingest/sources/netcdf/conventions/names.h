@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "nc_file.h"
+#include "water.h"
+
+namespace nepho::netcdf {
+
+// What models call things. A new model's names are words more in the tables of names.cpp.
+
+struct VariableNames {
+  std::vector<std::string> standard_names;  // CF: asked for first
+  std::vector<std::string> names;           // as written by models, compared without case
+};
+
+namespace names {
+extern const VariableNames kTemperature, kPressure, kSurfacePressure, kSpecificHumidity,
+    kVapourMixingRatio, kRelativeHumidity, kCloudFraction, kDropletNumber, kTerrain, kLandFraction,
+    kHalfLevelHeight, kLowerInterfaceHeight, kFullLevelHeight, kGeopotentialHeight, kGeopotential,
+    kLatitude, kLongitude;
+}
+
+// The first variable that answers to the names, standard names before names, and that `accept`
+// takes; null where there is none.
+const NcVariable* find_named(const NcFile& file, const VariableNames& wanted,
+                             const std::function<bool(const NcVariable&)>& accept);
+
+// Per what a mixing ratio counts; contents are kg/m3 and need no air.
+enum class Basis { kDryAir, kMoistAir, kVolume };
+
+struct WaterVariable {
+  Species species = Species::kCloudWater;
+  const NcVariable* variable = nullptr;
+  Basis basis = Basis::kMoistAir;
+  double to_si = 1;
+  bool freezes = false;  // below 0 degC it is the ice of its kind: schemes with one condensate
+};
+
+// Condensate among the numeric variables that `accept` takes, each kind at most once, cloud before
+// precipitation. Throws Error on units that are missing, unknown, or of no water content.
+std::vector<WaterVariable> find_water(const NcFile& file,
+                                      const std::function<bool(const NcVariable&)>& accept);
+// Refuses a file without cloud water: lists its variables of three dimensions and more, and the
+// names known. Triangles and profiles are named as such.
+void require_water(const NcFile& file, const std::vector<WaterVariable>& water);
+
+}  // namespace nepho::netcdf

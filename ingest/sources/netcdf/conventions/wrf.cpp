@@ -1,0 +1,349 @@
+// WRF-ARW output (wrfout_d0*): the WRF Users' Guide, chapter 5 and appendix; mass-coordinate
+// columns between staggered geopotentials, Arakawa C grid.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <mutex>
+
+#include "air.h"
+#include "conventions/convention.h"
+#include "conventions/field_reader.h"
+#include "conventions/horizontal.h"
+#include "conventions/model.h"
+#include "core/error.h"
+#include "level_heights.h"
+#include "nc_time.h"
+#include "units/constants.h"
+
+namespace nepho::netcdf {
+namespace {
+
+// WRF's own constants (share/module_model_constants.F).
+constexpr double kGravity_m_per_s2 = 9.81;
+constexpr double kSphere_m = 6370000;
+constexpr double kThetaBase_K = 300;
+constexpr int kWsm3 = 3;  // MP_PHYSICS of the scheme with one condensate
+
+constexpr double kMapAgreement_deg = 1e-3;
+
+int dimension(const NcFile& file, const std::string& name) {
+  const auto& all = file.dimensions();
+  const auto at = std::ranges::find(all, name, &NcDimension::name);
+  return at == all.end() ? -1 : int(at - all.begin());
+}
+
+// Reads of one file that all hooks of the Model share.
+class WrfFile {
+ public:
+  explicit WrfFile(std::shared_ptr<const NcFile> file);
+
+  // Hooks hold `self`.
+  static Model model(const std::shared_ptr<WrfFile>& self);
+
+ private:
+  const NcVariable& need(const char* name) const;
+  std::vector<float> sum(const char* base, const char* rest, int z, std::size_t time, int first,
+                         int count) const;
+  std::vector<float> interfaces_m(std::size_t time) const;
+  glm::dvec2 height_range_m(std::size_t time) const;
+  Air air(std::size_t time) const;
+  ForecastGround ground(std::size_t time) const;
+  std::shared_ptr<const HorizontalGrid> grid(std::size_t time) const;
+  std::shared_ptr<const HorizontalGrid> make_grid(std::size_t time) const;
+  std::vector<std::int64_t> times_ns(Model& model) const;
+  std::optional<MapProjection> projection() const;
+  void find_condensate(Model& model) const;
+  void compare_with_map(const HorizontalGrid& grid, Model& model) const;
+  double interface_m(double geopotential, double surface_geopotential) const;
+
+  std::shared_ptr<const NcFile> file_;
+  FieldReader reader_;
+  int z_ = -1, z_staggered_ = -1;
+  mutable std::mutex mutex_;
+  mutable std::map<std::size_t, std::shared_ptr<const HorizontalGrid>> grids_;
+};
+
+WrfFile::WrfFile(std::shared_ptr<const NcFile> file) : file_(std::move(file)) {
+  reader_.file = file_;
+  reader_.time = dimension(*file_, "Time");
+  reader_.x = dimension(*file_, "west_east");
+  reader_.y = dimension(*file_, "south_north");
+  z_ = dimension(*file_, "bottom_top");
+  z_staggered_ = dimension(*file_, "bottom_top_stag");
+  for (const auto& [id, name] : {std::pair{reader_.x, "west_east"},
+                                 {reader_.y, "south_north"},
+                                 {z_, "bottom_top"},
+                                 {z_staggered_, "bottom_top_stag"}})
+    if (id < 0)
+      throw Error({"the WRF file has no grid to put clouds on", file_->path(),
+                   std::string("a dimension ") + name, "none of this name", ""});
+  reader_.nx = int(file_->size(reader_.x));
+  reader_.ny = int(file_->size(reader_.y));
+  if (file_->size(z_staggered_) != file_->size(z_) + 1)
+    throw Error(
+        {"the WRF file's levels do not fit together", file_->path(),
+         "bottom_top_stag one more than bottom_top",
+         std::to_string(file_->size(z_staggered_)) + " and " + std::to_string(file_->size(z_)),
+         ""});
+}
+
+const NcVariable& WrfFile::need(const char* name) const {
+  const NcVariable* variable = file_->find(name);
+  if (!variable)
+    throw Error({"the WRF file lacks a variable", file_->path(), name, "no variable of this name",
+                 "keep PH, PHB, P, PB, T and QVAPOR beside the water when you cut a file down"});
+  return *variable;
+}
+
+std::vector<float> WrfFile::sum(const char* base, const char* rest, int z, std::size_t time,
+                                int first, int count) const {
+  std::vector<float> values = reader_.levels(need(base), z, false, time, first, count);
+  const std::vector<float> more = reader_.levels(need(rest), z, false, time, first, count);
+  for (std::size_t n = 0; n < values.size(); ++n) values[n] += more[n];
+  return values;
+}
+
+// The model's ground is at geopotential / 9.81 (its HGT); from there upwards geopotential is
+// energy, whatever g the model takes: geometric height by standard gravity that falls with height.
+double WrfFile::interface_m(double geopotential, double surface_geopotential) const {
+  const auto height_m = [](double phi) {
+    return height_of_geopotential_height_m(phi / constants::kStandardGravity_m_per_s2);
+  };
+  return surface_geopotential / kGravity_m_per_s2 + height_m(geopotential) -
+         height_m(surface_geopotential);
+}
+
+std::vector<float> WrfFile::interfaces_m(std::size_t time) const {
+  const int levels = int(file_->size(z_staggered_));
+  const std::vector<float> phi = sum("PHB", "PH", z_staggered_, time, 0, levels);
+  const std::size_t cells = std::size_t(reader_.nx) * std::size_t(reader_.ny);
+  std::vector<float> result(phi.size());
+  for (std::size_t k = 0; k < std::size_t(levels); ++k)
+    for (std::size_t n = 0; n < cells; ++n)
+      result[n * std::size_t(levels) + k] =
+          float(interface_m(double(phi[k * cells + n]), double(phi[n])));
+  make_rising(result, std::size_t(levels));
+#ifdef NEPHO_MUTANT_FLIPPED_LEVELS
+  for (std::size_t n = 0; n < cells; ++n) {
+    float* column = &result[n * std::size_t(levels)];
+    const float low = column[0], high = column[levels - 1];
+    std::reverse(column, column + levels);
+    for (int k = 0; k < levels; ++k) column[k] = low + high - column[k];
+  }
+#endif
+  return result;
+}
+
+glm::dvec2 WrfFile::height_range_m(std::size_t time) const {
+  const int top = int(file_->size(z_staggered_)) - 1;
+  const std::vector<float> low = sum("PHB", "PH", z_staggered_, time, 0, 1);
+  const std::vector<float> high = sum("PHB", "PH", z_staggered_, time, top, 1);
+  glm::dvec2 range{1e30, -1e30};
+  for (std::size_t n = 0; n < low.size(); ++n) {
+    range.x = std::min(range.x, interface_m(double(low[n]), double(low[n])));
+    range.y = std::max(range.y, interface_m(double(high[n]), double(low[n])));
+  }
+  return range;
+}
+
+Air WrfFile::air(std::size_t time) const {
+  Air air;
+  const int levels = int(file_->size(z_));
+  air.pressure_Pa = sum("PB", "P", z_, time, 0, levels);
+  air.temperature_K = reader_.field(need("T"), z_, false, time);
+  for (float& value : air.temperature_K) value += float(kThetaBase_K);
+  air.is_theta = true;
+  if (const NcVariable* vapour = file_->find("QVAPOR")) {
+    air.vapour = reader_.field(*vapour, z_, false, time);
+    air.vapour_is = Vapour::kMixingRatio;
+  }
+  return air;
+}
+
+ForecastGround WrfFile::ground(std::size_t time) const {
+  ForecastGround ground;
+  if (const NcVariable* height = file_->find("HGT"); height && reader_.is_surface(*height))
+    ground.height_m = reader_.surface(*height, time);
+  if (const NcVariable* land = file_->find("LANDMASK"); land && reader_.is_surface(*land)) {
+    ground.water = reader_.surface(*land, time);
+    for (float& value : ground.water) value = 1 - value;
+  }
+  return ground;
+}
+
+// Grids are few and small; a moving nest has one per time.
+std::shared_ptr<const HorizontalGrid> WrfFile::grid(std::size_t time) const {
+  const NcVariable* latitude = file_->find("XLAT");
+  const bool moves = latitude && std::ranges::find(latitude->dimensions, reader_.time) !=
+                                     latitude->dimensions.end();
+  const std::size_t key = moves ? time : 0;
+  {
+    const std::lock_guard guard(mutex_);
+    if (const auto at = grids_.find(key); at != grids_.end()) return at->second;
+  }
+  std::shared_ptr<const HorizontalGrid> made = make_grid(key);
+  const std::lock_guard guard(mutex_);
+  return grids_.emplace(key, std::move(made)).first->second;
+}
+
+std::shared_ptr<const HorizontalGrid> WrfFile::make_grid(std::size_t time) const {
+  const NcVariable *latitude = file_->find("XLAT"), *longitude = file_->find("XLONG");
+  if (latitude && longitude && reader_.nx > 1 && reader_.ny > 1) {
+    const auto doubles = [](const std::vector<float>& v) {
+      return std::vector<double>(v.begin(), v.end());
+    };
+    return points_grid(reader_.nx, reader_.ny, doubles(reader_.surface(*latitude, time)),
+                       doubles(reader_.surface(*longitude, time)),
+                       file_->path() + " [XLAT, XLONG]");
+  }
+  const auto map = projection();
+  const auto lat = file_->number("CEN_LAT"), lon = file_->number("CEN_LON");
+  const auto dx = file_->number("DX"), dy = file_->number("DY");
+  if (!map || !lat || !lon || !dx || !dy || !(*dx > 0) || !(*dy > 0))
+    throw Error({"the WRF file does not say where its cells lie", file_->path(),
+                 "XLAT and XLONG, or MAP_PROJ with its attributes", "neither", ""});
+  const glm::dvec2 centre = map->map_m({*lat, *lon});
+  std::vector<double> x, y;
+  for (int i = 0; i < reader_.nx; ++i) x.push_back(centre.x + *dx * (i + 0.5 - 0.5 * reader_.nx));
+  for (int j = 0; j < reader_.ny; ++j) y.push_back(centre.y + *dy * (j + 0.5 - 0.5 * reader_.ny));
+  return map_grid(x, y, *map);
+}
+
+std::optional<MapProjection> WrfFile::projection() const {
+  const auto kind = file_->number("MAP_PROJ"), lat1 = file_->number("TRUELAT1");
+  const auto lon = file_->number("STAND_LON");
+  if (!kind || !lat1 || !lon) return {};
+  MapSpec spec;
+  spec.equatorial_m = spec.polar_m = kSphere_m;
+  spec.true_latitude1_deg = *lat1;
+  spec.true_latitude2_deg = file_->number("TRUELAT2").value_or(*lat1);
+  spec.central_longitude_deg = *lon;
+  if (*kind == 1) {
+    // A second true latitude out of range stands for a tangent cone.
+    if (!(std::abs(spec.true_latitude2_deg) < 90)) spec.true_latitude2_deg = *lat1;
+    spec.kind = MapKind::kLambertConformal;
+  } else if (*kind == 2) {
+    spec.kind = MapKind::kPolarStereographic;
+  } else if (*kind == 3) {
+    spec.kind = MapKind::kMercator;
+  } else {
+    return {};  // 0: idealised, without a place; 6: latitudes and longitudes, maybe rotated
+  }
+  try {
+    return MapProjection(spec);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+// XLAT and XLONG against the map that the attributes name, laid through the first cell.
+void WrfFile::compare_with_map(const HorizontalGrid& grid, Model& model) const {
+  const auto map = projection();
+  const auto dx = file_->number("DX"), dy = file_->number("DY");
+  if (!map || !dx || !dy || !file_->find("XLAT")) return;
+  const glm::dvec2 first = map->map_m(grid.lat_lon_deg(0.5, 0.5));
+  double worst = 0;
+  for (int j = 0; j < reader_.ny; ++j)
+    for (int i = 0; i < reader_.nx; ++i) {
+      const glm::dvec2 file = grid.lat_lon_deg(i + 0.5, j + 0.5);
+      const glm::dvec2 ours = map->lat_lon_deg(first + glm::dvec2(i * *dx, j * *dy));
+      const double turn = std::remainder(file.y - ours.y, 360.0);
+      worst = std::max({worst, std::abs(file.x - ours.x),
+                        std::abs(turn) * std::cos(file.x * 0.017453292519943295)});
+    }
+  char text[200];
+  std::snprintf(text, sizeof text, "XLAT and XLONG %s the map of the attributes: %.1e deg.",
+                worst <= kMapAgreement_deg ? "agree with" : "DIFFER from", worst);
+  model.facts.push_back(text);
+}
+
+std::vector<std::int64_t> WrfFile::times_ns(Model& model) const {
+  const std::size_t count = reader_.time < 0 ? 1 : file_->size(reader_.time);
+  if (count == 0)
+    throw Error({"the file has no times", file_->path(), "at least one", "Time = 0", ""});
+  std::vector<std::int64_t> times;
+  if (const NcVariable* texts = file_->find("Times")) {
+    for (const std::string& text : file_->read_texts(*texts))
+      if (const auto ns = parse_date_ns(text)) times.push_back(*ns);
+    if (times.size() == count) return times;
+  }
+  const NcVariable* minutes = file_->find("XTIME");
+  if (minutes && is_time_unit(minutes->text("units"))) {
+    times = read_times_ns(*file_, *minutes);
+    if (times.size() == count) return times;
+  }
+  std::string start = file_->text("SIMULATION_START_DATE");
+  if (start.empty()) start = file_->text("START_DATE");
+  if (const auto origin = parse_date_ns(start); origin && minutes) {
+    times.clear();
+    for (const double value : file_->read_all(*minutes))
+      times.push_back(*origin + std::llround(value * 60e9));
+    if (times.size() == count) return times;
+  }
+  if (count > 1)
+    throw Error({"the WRF file does not say which times it holds", file_->path(),
+                 "Times, or XTIME with its start", "neither", ""});
+  model.assumptions.push_back("The file has no time: 1970-01-01 00:00 UTC is taken.");
+  return {0};
+}
+
+// Schemes with one condensate, ice below freezing, do not say so in the variables.
+void WrfFile::find_condensate(Model& model) const {
+  model.water = find_water(
+      *file_, [&](const NcVariable& variable) { return reader_.is_field(variable, z_); });
+  require_water(*file_, model.water);
+  const bool has_ice = std::ranges::any_of(
+      model.water, [](const WaterVariable& water) { return is_ice(water.species); });
+  if (file_->number("MP_PHYSICS") == kWsm3 && !has_ice) {
+    for (WaterVariable& water : model.water) water.freezes = true;
+    model.facts.push_back(
+        "WSM3 (MP_PHYSICS 3) has one condensate: QCLOUD is ice and QRAIN snow below 0 degC.");
+  }
+  const auto field = [&](const char* name) {
+    const NcVariable* variable = file_->find(name);
+    return variable && reader_.is_field(*variable, z_) ? variable : nullptr;
+  };
+  model.cloud_fraction = field("CLDFRA");
+  model.droplet_number = field("QNCLOUD");
+}
+
+Model WrfFile::model(const std::shared_ptr<WrfFile>& self) {
+  const NcFile& file = *self->file_;
+  Model model;
+  model.convention = "WRF-ARW";
+  model.file = self->file_;
+  model.nx = self->reader_.nx;
+  model.ny = self->reader_.ny;
+  model.nz = int(file.size(self->z_));
+  self->find_condensate(model);
+  for (const char* name : {"PH", "PHB", "P", "PB", "T"}) self->need(name);
+  model.utc_ns = self->times_ns(model);
+  self->compare_with_map(*self->grid(0), model);
+  if (!file.find("QVAPOR"))
+    model.assumptions.push_back("There is no QVAPOR: the air is taken as dry (1 % of density).");
+  model.field = [self](const NcVariable& variable, std::size_t time) {
+    return self->reader_.field(variable, self->z_, false, time);
+  };
+  model.grid = [self](std::size_t time) { return self->grid(time); };
+  model.air = [self](std::size_t time) { return self->air(time); };
+  model.interfaces_m = [self](std::size_t time, const Air*) { return self->interfaces_m(time); };
+  model.height_range_m = [self](std::size_t time) { return self->height_range_m(time); };
+  model.ground = [self](std::size_t time) { return self->ground(time); };
+  return model;
+}
+
+int recognise(const NcFile& file) {
+  if (file.text("TITLE").find("WRF") != std::string::npos) return 100;
+  return file.find("PHB") && file.find("PH") && dimension(file, "bottom_top_stag") >= 0 ? 90 : 0;
+}
+
+std::unique_ptr<Forecast> open_wrf(std::shared_ptr<const NcFile> file, bool force) {
+  return make_forecast(WrfFile::model(std::make_shared<WrfFile>(std::move(file))), force);
+}
+
+}  // namespace
+
+const Convention kWrf = {"WRF-ARW", recognise, open_wrf};
+
+}  // namespace nepho::netcdf

@@ -1,0 +1,272 @@
+#include "nc_file.h"
+
+#include <hdf5.h>
+#include <netcdf.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <numeric>
+
+#include "api/module_support.h"
+#include "classic_size.h"
+#include "core/error.h"
+
+namespace nepho::netcdf {
+namespace {
+
+constexpr std::size_t kBlockValues = std::size_t(1) << 18;  // unpacked at once: 2 MiB of doubles
+
+// netCDF switches HDF5's error printing off on the thread that first calls it; HDF5 keeps that
+// setting per thread.
+void silence_hdf5() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+[[noreturn]] void refuse(const std::string& path, int status) {
+  if (status == NC_ENOTNC)
+    throw Error({"this is not a netCDF file", path, "netCDF-3 (CDF) or netCDF-4 (HDF5)",
+                 "another kind of file",
+                 "a GRIB file can be converted: grib_to_netcdf, cdo -f nc"});
+  throw Error({"netCDF cannot read the file", path, "an intact netCDF file", nc_strerror(status),
+               "it is cut short or damaged: write or copy it again"});
+}
+
+void check_plain_file(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw Error({"no such file", path, "", "", ""});
+  if (!std::filesystem::is_regular_file(status))
+    throw Error({"this is no file", path, "a netCDF file", "a folder or a device", ""});
+  if (std::filesystem::file_size(path, error) == 0)
+    throw Error({"the file is empty", path, "a netCDF file", "0 bytes", "write or copy it again"});
+}
+
+std::string trimmed(std::string text) {
+  while (!text.empty() &&
+         (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back()))))
+    text.pop_back();
+  const auto first = std::ranges::find_if(text, [](unsigned char c) { return !std::isspace(c); });
+  return {first, text.end()};
+}
+
+bool is_number(int type) {
+  return type != NC_CHAR && type != NC_STRING && type <= NC_UINT64 && type >= NC_BYTE;
+}
+
+NcAttribute read_attribute(int file, int variable, const char* name) {
+  NcAttribute result{name, "", {}};
+  nc_type type = 0;
+  std::size_t length = 0;
+  if (nc_inq_att(file, variable, name, &type, &length) != NC_NOERR) return result;
+  if (type == NC_CHAR) {
+    std::string text(length, '\0');
+    if (length && nc_get_att_text(file, variable, name, text.data()) == NC_NOERR)
+      result.text = trimmed(text);
+  } else if (type == NC_STRING && length > 0) {
+    std::vector<char*> strings(length, nullptr);
+    if (nc_get_att_string(file, variable, name, strings.data()) == NC_NOERR) {
+      if (strings[0]) result.text = trimmed(strings[0]);
+      nc_free_string(length, strings.data());
+    }
+  } else if (is_number(type)) {
+    result.numbers.resize(length);
+    if (length && nc_get_att_double(file, variable, name, result.numbers.data()) != NC_NOERR)
+      result.numbers.clear();
+  }
+  return result;
+}
+
+void read_attributes(int file, int variable, int count, std::vector<NcAttribute>& attributes) {
+  for (int a = 0; a < count; ++a) {
+    char name[NC_MAX_NAME + 1] = {};
+    if (nc_inq_attname(file, variable, a, name) == NC_NOERR)
+      attributes.push_back(read_attribute(file, variable, name));
+  }
+}
+
+}  // namespace
+
+const NcAttribute* NcVariable::attribute(const std::string& wanted) const {
+  const auto at = std::ranges::find(attributes, wanted, &NcAttribute::name);
+  return at == attributes.end() ? nullptr : &*at;
+}
+
+std::string NcVariable::text(const std::string& wanted) const {
+  const NcAttribute* found = attribute(wanted);
+  return found ? found->text : "";
+}
+
+std::optional<double> NcVariable::number(const std::string& wanted) const {
+  const NcAttribute* found = attribute(wanted);
+  if (!found || found->numbers.empty()) return {};
+  return found->numbers.front();
+}
+
+bool NcVariable::numeric() const {
+  return is_number(type);
+}
+
+template <class Action>
+auto NcFile::locked(Action&& action) const {
+  return tbb::this_task_arena::isolate([&] {
+    const IoGuard guard(io_lock_);
+    silence_hdf5();
+    return action();
+  });
+}
+
+NcFile::NcFile(std::string path, IoLock io_lock) : path_(std::move(path)), io_lock_(io_lock) {
+  check_plain_file(path_);
+  check_classic_size(path_);
+  locked([&] {
+    if (const int status = nc_open(path_.c_str(), NC_NOWRITE, &id_)) refuse(path_, status);
+    try {
+      inquire();
+    } catch (...) {
+      nc_close(id_);
+      throw;
+    }
+  });
+}
+
+NcFile::~NcFile() {
+  locked([&] { nc_close(id_); });
+}
+
+void NcFile::inquire() {
+  int dimensions = 0, variables = 0, attributes = 0;
+  if (const int status = nc_inq(id_, &dimensions, &variables, &attributes, nullptr))
+    refuse(path_, status);
+  for (int d = 0; d < dimensions; ++d) {
+    char name[NC_MAX_NAME + 1] = {};
+    NcDimension dimension;
+    if (const int status = nc_inq_dim(id_, d, name, &dimension.size)) refuse(path_, status);
+    dimension.name = name;
+    dimensions_.push_back(dimension);
+  }
+  for (int v = 0; v < variables; ++v) variables_.push_back(inquire_variable(v));
+  read_attributes(id_, NC_GLOBAL, attributes, global_.attributes);
+}
+
+NcVariable NcFile::inquire_variable(int id) const {
+  char name[NC_MAX_NAME + 1] = {};
+  NcVariable variable;
+  variable.id = id;
+  int dimensions = 0, attributes = 0;
+  std::vector<int> ids(NC_MAX_VAR_DIMS);
+  if (const int status =
+          nc_inq_var(id_, id, name, &variable.type, &dimensions, ids.data(), &attributes))
+    refuse(path_, status);
+  variable.name = name;
+  ids.resize(std::size_t(dimensions));
+  variable.dimensions = ids;
+  read_attributes(id_, id, attributes, variable.attributes);
+  return variable;
+}
+
+const NcVariable* NcFile::find(const std::string& name) const {
+  const auto at = std::ranges::find(variables_, name, &NcVariable::name);
+  return at == variables_.end() ? nullptr : &*at;
+}
+
+std::vector<std::size_t> NcFile::shape(const NcVariable& variable) const {
+  std::vector<std::size_t> sizes;
+  for (const int d : variable.dimensions) sizes.push_back(size(d));
+  return sizes;
+}
+
+std::string NcFile::shape_text(const NcVariable& variable) const {
+  std::string text;
+  for (const int d : variable.dimensions)
+    text += (text.empty() ? "" : ", ") + name(d) + " " + std::to_string(size(d));
+  return variable.name + "(" + text + ")";
+}
+
+// Floats without packing are read where they stay; all else goes through blocks of doubles along
+// the slowest dimension.
+template <class T>
+std::vector<T> NcFile::read(const NcVariable& variable, const std::vector<std::size_t>& start,
+                            const std::vector<std::size_t>& count) const {
+  const Packing packing = packing_of(variable);
+  const std::size_t total =
+      std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
+  std::vector<T> result(total);
+  if (total == 0) return result;
+  const auto fail = [&](int status) {
+    throw Error({"netCDF cannot read the variable", where(variable), "an intact netCDF file",
+                 nc_strerror(status), "the file is cut short or damaged: write or copy it again"});
+  };
+  if constexpr (std::is_same_v<T, float>)
+    if (variable.type == NC_FLOAT) {
+      locked([&] {
+        if (const int status =
+                nc_get_vara_float(id_, variable.id, start.data(), count.data(), result.data()))
+          fail(status);
+      });
+      for (T& value : result) value = T(packing.value(double(value)));
+      return result;
+    }
+  std::vector<std::size_t> at = start, some = count;
+  const std::size_t rows = count.empty() ? 1 : count[0], row = total / rows;
+  const std::size_t block_rows = std::max<std::size_t>(1, kBlockValues / row);
+  std::vector<double> block(std::min(rows, block_rows) * row);
+  for (std::size_t first = 0; first < rows; first += block_rows) {
+    const std::size_t height = std::min(block_rows, rows - first);
+    if (!count.empty()) {
+      at[0] = start[0] + first;
+      some[0] = height;
+    }
+    locked([&] {
+      if (const int status =
+              nc_get_vara_double(id_, variable.id, at.data(), some.data(), block.data()))
+        fail(status);
+    });
+    for (std::size_t n = 0; n < height * row; ++n)
+      result[first * row + n] = T(packing.value(block[n]));
+  }
+  return result;
+}
+
+std::vector<float> NcFile::read_floats(const NcVariable& variable,
+                                       const std::vector<std::size_t>& start,
+                                       const std::vector<std::size_t>& count) const {
+  return read<float>(variable, start, count);
+}
+
+std::vector<double> NcFile::read_doubles(const NcVariable& variable,
+                                         const std::vector<std::size_t>& start,
+                                         const std::vector<std::size_t>& count) const {
+  return read<double>(variable, start, count);
+}
+
+std::vector<double> NcFile::read_all(const NcVariable& variable) const {
+  const std::vector<std::size_t> count = shape(variable);
+  return read<double>(variable, std::vector<std::size_t>(count.size(), 0), count);
+}
+
+std::vector<std::string> NcFile::read_texts(const NcVariable& variable) const {
+  const std::vector<std::size_t> count = shape(variable);
+  const std::size_t total =
+      std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
+  std::vector<std::string> result;
+  locked([&] {
+    if (variable.type == NC_CHAR) {
+      const std::size_t length = count.empty() ? 1 : count.back();
+      std::string all(total, '\0');
+      if (nc_get_var_text(id_, variable.id, all.data()) != NC_NOERR) return;
+      for (std::size_t at = 0; length > 0 && at + length <= total; at += length)
+        result.push_back(trimmed(all.substr(at, length)));
+    } else if (variable.type == NC_STRING) {
+      std::vector<char*> strings(total, nullptr);
+      if (nc_get_var_string(id_, variable.id, strings.data()) != NC_NOERR) return;
+      for (const char* text : strings) result.push_back(text ? trimmed(text) : "");
+      nc_free_string(total, strings.data());
+    }
+  });
+  return result;
+}
+
+}  // namespace nepho::netcdf

@@ -1,0 +1,85 @@
+#include <netcdf.h>
+
+#include <cmath>
+#include <limits>
+
+#include "nc_file.h"
+
+namespace nepho::netcdf {
+namespace {
+
+// The library's fill of a type where the variable names none; bytes have no default.
+std::optional<double> default_fill(int type) {
+  switch (type) {
+    case NC_SHORT:
+      return NC_FILL_SHORT;
+    case NC_USHORT:
+      return NC_FILL_USHORT;
+    case NC_INT:
+      return NC_FILL_INT;
+    case NC_UINT:
+      return NC_FILL_UINT;
+    case NC_INT64:
+      return double(NC_FILL_INT64);
+    case NC_UINT64:
+      return double(NC_FILL_UINT64);
+    case NC_FLOAT:
+      return double(NC_FILL_FLOAT);
+    case NC_DOUBLE:
+      return NC_FILL_DOUBLE;
+    default:
+      return {};
+  }
+}
+
+// As a value of the packed type reads it: -1e20 written as double beside floats.
+double in_type(double value, int type) {
+  return type == NC_FLOAT ? double(float(value)) : value;
+}
+
+double signed_to_unsigned(double value, double wrap) {
+  return value < 0 ? value + wrap : value;
+}
+
+}  // namespace
+
+double Packing::value(double packed) const {
+  packed = signed_to_unsigned(packed, wrap);
+  for (const double fill : fills)
+    if (packed == fill) return std::numeric_limits<double>::quiet_NaN();
+  if (!(packed >= lowest && packed <= highest)) return std::numeric_limits<double>::quiet_NaN();
+  return packed * scale + offset;
+}
+
+Packing packing_of(const NcVariable& variable) {
+  Packing packing;
+  packing.lowest = -std::numeric_limits<double>::infinity();
+  packing.highest = std::numeric_limits<double>::infinity();
+  packing.scale = variable.number("scale_factor").value_or(1);
+  packing.offset = variable.number("add_offset").value_or(0);
+  const std::string is_unsigned = variable.text("_Unsigned");
+  if (is_unsigned == "true" || is_unsigned == "True") {
+    if (variable.type == NC_BYTE) packing.wrap = 256;
+    if (variable.type == NC_SHORT) packing.wrap = 65536;
+    if (variable.type == NC_INT) packing.wrap = 4294967296.0;
+  }
+  const auto packed = [&](double value) {
+    return signed_to_unsigned(in_type(value, variable.type), packing.wrap);
+  };
+  // FillValue without its line is what some writers leave behind; what it names is missing as well.
+  for (const char* name : {"_FillValue", "missing_value", "FillValue"})
+    if (const NcAttribute* attribute = variable.attribute(name))
+      for (const double value : attribute->numbers) packing.fills.push_back(packed(value));
+  if (!variable.attribute("_FillValue"))
+    if (const auto fill = default_fill(variable.type)) packing.fills.push_back(packed(*fill));
+  if (const auto low = variable.number("valid_min")) packing.lowest = packed(*low);
+  if (const auto high = variable.number("valid_max")) packing.highest = packed(*high);
+  if (const NcAttribute* range = variable.attribute("valid_range"))
+    if (range->numbers.size() == 2) {
+      packing.lowest = packed(range->numbers[0]);
+      packing.highest = packed(range->numbers[1]);
+    }
+  return packing;
+}
+
+}  // namespace nepho::netcdf
