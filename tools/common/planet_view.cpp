@@ -136,7 +136,7 @@ bool clear_of_terrain(const PlanetGround& ground, const glm::dvec3& eye_m, const
 
 double oblique_part_m(const CloudMap& map, const Ellipsoid& body) {
   const double extent_m = map.extent().radius_rad * body.equatorial_m;
-  return std::min(std::max(8 * map.finest_cell_m, 20e3),
+  return std::min(std::max(16 * map.finest_cell_m, 20e3),
                   std::max(extent_m / 2.5, 3 * map.finest_cell_m));
 }
 
@@ -274,20 +274,22 @@ Stand place_to_stand(const CloudMap& map, const glm::dvec3& direction, const Pla
   const Layer layer = layer_near(map, direction, std::max(30e3, 2 * map.cell_m), ground.body);
   const double off_m = std::clamp(layer.middle_m / std::tan(kCloudStands_rad), 3e3, 40e3);
   const double wide_m = std::max(0.5 * off_m, 0.5 * map.cell_m);
-  double least = 0, heading = 0;
-  for (int n = 0; n < kHeadings; ++n) {
+  double least = -1, heading = 0, away_rad = 0;
+  for (int n = 0; n < 3 * kHeadings; ++n) {
     const double candidate = glm::two_pi<double>() * n / kHeadings;
-    const glm::dvec3 there = moved(direction, axes, candidate, off_m / ground.body.equatorial_m);
+    const double farther = 1 + 0.7 * (n / kHeadings);  // near is better, if it is as open
+    const double candidate_rad = farther * off_m / ground.body.equatorial_m;
+    const glm::dvec3 there = moved(direction, axes, candidate, candidate_rad);
     double cover = 0;
     for (const CloudColumn& c : map.columns) {
       const double apart = glm::length(c.direction - there) * ground.body.equatorial_m / wide_m;
       cover += c.cloudiness() * c.area_m2 * std::exp(-0.5 * apart * apart);
     }
-    if (n == 0 || cover < least) least = cover, heading = candidate;
+    cover *= farther;
+    if (least < 0 || cover < least) least = cover, heading = candidate, away_rad = candidate_rad;
   }
-  const GeodeticPoint place = geodetic_point(
-      ground.body,
-      ground.point_m(moved(direction, axes, heading, off_m / ground.body.equatorial_m), 0));
+  const GeodeticPoint place =
+      geodetic_point(ground.body, ground.point_m(moved(direction, axes, heading, away_rad), 0));
   Stand stand;
   stand.latitude_deg = place.latitude_deg;
   stand.longitude_deg = place.longitude_deg;
