@@ -69,6 +69,7 @@ class Drawing {
       double left = number() * sum;
       std::size_t chosen = 0;
       while (chosen + 1 < most.size() && (left -= most[chosen]) >= 0) ++chosen;
+      if (!(most[chosen] > 0)) return std::nullopt;  // by rounding, at the end
       node.key = choices[chosen];
       node.weight *= sum / most[chosen];
       if (node.key.level() == info_.lattice.max_level()) return node;

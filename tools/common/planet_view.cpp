@@ -28,6 +28,9 @@ double turn_between(double a_rad, double b_rad) {
 }
 
 glm::dvec3 heading_of(const LocalAxes& axes, double azimuth_rad) {
+#ifdef NEPHO_MUTANT_HEADING_EAST_WEST
+  azimuth_rad = -azimuth_rad;
+#endif
   return std::sin(azimuth_rad) * axes.east + std::cos(azimuth_rad) * axes.north;
 }
 
@@ -69,22 +72,29 @@ Layer layer_near(const CloudMap& map, const glm::dvec3& direction, double radius
 // `middle_m` some way ahead.
 struct Slant {
   double eye_m = 0, ahead_rad = 0;  // the latter seen from the planet's centre
+  double length_m = 0;
 };
 Slant slant_from(double eye_m, double middle_m, double radius_m, const Lens& lens) {
   const double eye_r = radius_m + eye_m, ground_r = radius_m + std::min(0.0, middle_m);
+#ifdef NEPHO_MUTANT_FLAT_EARTH
+  const double dip_rad = 0 * ground_r;
+#else
   const double dip_rad = std::acos(std::min(1.0, ground_r / eye_r));
+#endif
   const double down_rad = dip_rad + std::atan(kHorizonAt * std::tan(lens.vertical_fov_rad / 2));
   const double there = eye_r * std::cos(down_rad) / (radius_m + middle_m);
-  return {eye_m, down_rad - std::acos(std::min(1.0, there))};
+  const double ahead_rad = down_rad - std::acos(std::min(1.0, there));
+  const double fall_m = eye_m - middle_m, chord = 2 * std::sin(ahead_rad / 2);
+  return {eye_m, ahead_rad,
+          std::sqrt(fall_m * fall_m + eye_r * (radius_m + middle_m) * chord * chord)};
 }
 
 // By halving: farther from higher.
-Slant slant_that_reaches(double ahead_m, double middle_m, double radius_m, const Lens& lens) {
+Slant slant_that_reaches(double length_m, double middle_m, double radius_m, const Lens& lens) {
   double low_m = middle_m + 1, high_m = middle_m + radius_m;
   for (int n = 0; n < 60; ++n) {
     const double eye_m = 0.5 * (low_m + high_m);
-    const bool short_of =
-        slant_from(eye_m, middle_m, radius_m, lens).ahead_rad * radius_m < ahead_m;
+    const bool short_of = slant_from(eye_m, middle_m, radius_m, lens).length_m < length_m;
     (short_of ? low_m : high_m) = eye_m;
   }
   return slant_from(high_m, middle_m, radius_m, lens);
@@ -105,8 +115,10 @@ double cloud_ahead(const CloudMap& map, const glm::dvec3& eye_direction, const L
   for (const CloudColumn& c : map.columns) {
     const glm::dvec3 d = c.direction - eye_direction;
     const double apart = glm::length(d);
-    if (apart > far_rad || turn_between(azimuth_rad(eye_axes, d), heading_rad) > half_rad) continue;
-    sum += c.cloudiness() * c.area_m2 / (apart * apart + near_rad * near_rad);
+    const double off = turn_between(azimuth_rad(eye_axes, d), heading_rad) / half_rad;
+    if (apart > far_rad || off > 1) continue;
+    sum +=
+        (1 - 0.9 * off * off) * c.cloudiness() * c.area_m2 / (apart * apart + near_rad * near_rad);
   }
   return sum;
 }
@@ -124,7 +136,7 @@ bool clear_of_terrain(const PlanetGround& ground, const glm::dvec3& eye_m, const
 
 double oblique_part_m(const CloudMap& map, const Ellipsoid& body) {
   const double extent_m = map.extent().radius_rad * body.equatorial_m;
-  return std::min(std::max(8 * map.finest_cell_m, 20e3),
+  return std::min(std::max(16 * map.finest_cell_m, 20e3),
                   std::max(extent_m / 2.5, 3 * map.finest_cell_m));
 }
 
@@ -133,8 +145,8 @@ PlanetView oblique_view(const CloudMap& map, const glm::dvec3& direction,
                         const std::optional<glm::dvec3>& to_sun) {
   const double radius_m = ground.body.equatorial_m, part_m = oblique_part_m(map, ground.body);
   const Layer layer = layer_near(map, direction, 3 * part_m, ground.body);
-  const double ahead_m = part_m / (kPartFills * std::tan(half_width_rad(lens)));
-  Slant slant = slant_that_reaches(ahead_m, layer.middle_m, radius_m, lens);
+  const double length_m = part_m / (kPartFills * std::tan(half_width_rad(lens)));
+  Slant slant = slant_that_reaches(length_m, layer.middle_m, radius_m, lens);
   if (slant.eye_m < kOverTop * layer.top_m)
     slant = slant_from(kOverTop * layer.top_m, layer.middle_m, radius_m, lens);
 
@@ -214,7 +226,11 @@ PlanetView standing_view(const Stand& stand, const CloudMap& near, const PlanetG
   const double half_rad = half_width_rad(lens), far_rad = kInSight_m / ground.body.equatorial_m;
   const double near_rad = 3e3 / ground.body.equatorial_m;
 
+#ifdef NEPHO_MUTANT_DEGREES_FOR_RADIANS
+  double heading = stand.azimuth_deg.value_or(0);
+#else
   double heading = glm::radians(stand.azimuth_deg.value_or(0));
+#endif
   if (!stand.azimuth_deg) {
     double best = -1;
     for (int n = 0; n < kHeadings; ++n) {
@@ -258,20 +274,22 @@ Stand place_to_stand(const CloudMap& map, const glm::dvec3& direction, const Pla
   const Layer layer = layer_near(map, direction, std::max(30e3, 2 * map.cell_m), ground.body);
   const double off_m = std::clamp(layer.middle_m / std::tan(kCloudStands_rad), 3e3, 40e3);
   const double wide_m = std::max(0.5 * off_m, 0.5 * map.cell_m);
-  double least = 0, heading = 0;
-  for (int n = 0; n < kHeadings; ++n) {
+  double least = -1, heading = 0, away_rad = 0;
+  for (int n = 0; n < 3 * kHeadings; ++n) {
     const double candidate = glm::two_pi<double>() * n / kHeadings;
-    const glm::dvec3 there = moved(direction, axes, candidate, off_m / ground.body.equatorial_m);
+    const double farther = 1 + 0.7 * (n / kHeadings);  // near is better, if it is as open
+    const double candidate_rad = farther * off_m / ground.body.equatorial_m;
+    const glm::dvec3 there = moved(direction, axes, candidate, candidate_rad);
     double cover = 0;
     for (const CloudColumn& c : map.columns) {
       const double apart = glm::length(c.direction - there) * ground.body.equatorial_m / wide_m;
       cover += c.cloudiness() * c.area_m2 * std::exp(-0.5 * apart * apart);
     }
-    if (n == 0 || cover < least) least = cover, heading = candidate;
+    cover *= farther;
+    if (least < 0 || cover < least) least = cover, heading = candidate, away_rad = candidate_rad;
   }
-  const GeodeticPoint place = geodetic_point(
-      ground.body,
-      ground.point_m(moved(direction, axes, heading, off_m / ground.body.equatorial_m), 0));
+  const GeodeticPoint place =
+      geodetic_point(ground.body, ground.point_m(moved(direction, axes, heading, away_rad), 0));
   Stand stand;
   stand.latitude_deg = place.latitude_deg;
   stand.longitude_deg = place.longitude_deg;

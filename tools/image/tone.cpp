@@ -83,7 +83,7 @@ double exposure_on_planet(const FloatImage& radiance, std::span<const float> opt
                           double white) {
   constexpr double kNextToNone = 0.005, kDark = 0.1, kClear = 0.8;
   Luminances y = luminances(radiance, optical_depth);
-  const double dark = kDark * percentile(y.all, 0.995);
+  [[maybe_unused]] const double dark = kDark * percentile(y.all, 0.995);
 #ifndef NEPHO_MUTANT_DARK_COUNTS
   std::erase_if(y.cloud, [&](double cloud) { return cloud < dark; });
 #endif
