@@ -11,9 +11,12 @@ Number cloud_flux_transmittance(Number tau, Number mu0, Number g) {
 }
 
 // Daylight under clouds, as a part of the flux that would arrive without them: the direct beam, and
-// what the cloud overhead scatters down out of the same light. A gap overhead scatters nothing.
+// what the cloud overhead scatters down of that which clouds take from the beam. Nothing is added in
+// the sun beside a cloud, nor in a shadow with nothing overhead.
 Number cloud_daylight(Number tau_direct, Number tau_above, Number mu0, Number g) {
+  Number beam = exp(-tau_direct);
   Number beam_above = exp(-(tau_above / max(mu0, Number(0.05))));
   Number scattered = max(cloud_flux_transmittance(tau_above, mu0, g) - beam_above, Number(0.0));
-  return min(exp(-tau_direct) + scattered, Number(1.0));
+  Number taken = (Number(1.0) - beam) / max(Number(1.0) - beam_above, Number(1e-6));
+  return min(beam + scattered * min(taken, Number(1.0)), Number(1.0));
 }

@@ -37,6 +37,7 @@ TEST(Daylight, UnderEvenClouds) {
 
 TEST(Daylight, BesideTheCloudItIsTheBeamAlone) {
   EXPECT_EQ(f64::cloud_daylight(0, 0, 0.7, 0.85), 1);
+  EXPECT_EQ(f64::cloud_daylight(0, 20, 0.7, 0.85), 1);
   EXPECT_NEAR(f64::cloud_daylight(3, 0, 0.7, 0.85), std::exp(-3.0), 1e-12);
   // Never more than without clouds, and ever less as they thicken.
   double before = 1;
