@@ -86,7 +86,7 @@ void main() {
     if (towards_sun == 1 && !day) continue;
     ray_start = place.point + dvec3(place.up) * 0.05LF;
     ray_direction = towards_sun == 1 ? vec_of(frame.to_sun) : dvec3(place.up);
-    float tau = optical_depth_ahead();
+    float tau = optical_depth_ahead(1e4);
     if (towards_sun == 1) tau_sun = tau; else tau_above = tau;
   }
 #endif
