@@ -100,7 +100,7 @@ void main() {
   }
 #endif
   float g = planet.cloud_asymmetry;
-  float sky_part = cloud_daylight(tau_above, tau_above, 0.5, g);
+  float sky_part = cloud_daylight(2.0 * tau_above, tau_above, 0.5, g);  // as if from 60 degrees
   float direct = exp(-tau_sun);
   // What clouds overhead scatter down counts as the sun's light on level ground.
   float mu_sun = max(dot(place.up, to_sun), 0.0);
