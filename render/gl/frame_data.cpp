@@ -137,8 +137,9 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
     if (node.kind == NodeKind::kConstant || node.kind == NodeKind::kBrick) {
       record.first_child_or_lit = first_lit + node.lit;
       const auto [i, j, k] = node.key.ijk();
-      scene.lit[first_lit + node.lit] = {volume, node.key.root(), node.key.level(),
-                                         int(i), int(j),          int(k)};
+      if (node.seen)
+        scene.lit[first_lit + node.lit] = {volume, node.key.root(), node.key.level(),
+                                           int(i), int(j),          int(k)};
     }
     scene.nodes.push_back(record);
   }

@@ -241,7 +241,6 @@ void Renderer::report() {
   if (scene_.lit.empty()) report.left_out.push_back("light passes: nothing scatters");
   if (forest_.budget_bound)
     report.left_out.push_back("finer nodes that this view asks for: the budget is full");
-  if (!scene_.has_ice) report.left_out.push_back("ice: no volume tells it apart; one atlas");
   report.atlas_bytes = (scene_.has_ice ? 4 : 2) * gl::texels(atlas_size_);
   report.sun_bytes = (sky_light() ? 8 : 2) * gl::texels(light_size_);
   report.node_bytes = scene_.nodes.size() * sizeof(NodeRecord) +

@@ -86,7 +86,7 @@ void main() {
     if (towards_sun == 1 && !day) continue;
     ray_start = place.point + dvec3(place.up) * 0.05LF;
     ray_direction = towards_sun == 1 ? vec_of(frame.to_sun) : dvec3(place.up);
-    float tau = optical_depth_ahead();
+    float tau = optical_depth_ahead(1e4);
     if (towards_sun == 1) tau_sun = tau; else tau_above = tau;
   }
 #endif
@@ -100,7 +100,7 @@ void main() {
   }
 #endif
   float g = planet.cloud_asymmetry;
-  float sky_part = cloud_daylight(tau_above, tau_above, 0.5, g);
+  float sky_part = cloud_daylight(2.0 * tau_above, tau_above, 0.5, g);  // as if from 60 degrees
   float direct = exp(-tau_sun);
   // What clouds overhead scatter down counts as the sun's light on level ground.
   float mu_sun = max(dot(place.up, to_sun), 0.0);

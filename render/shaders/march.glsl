@@ -176,14 +176,15 @@ float cell_end(float t_m, float end_m, out int sub_steps) {
 }
 #endif
 
-// Optical depth from the start to the ground, or to where the ray leaves all charts.
+// Optical depth from the start to the ground, or to where the ray leaves all charts; done where it
+// is above `most`.
 const float OPAQUE = 65504.0;  // the largest half float
-float optical_depth_ahead() {
+float optical_depth_ahead(float most) {
   float end_m, t = begin_walks(end_m), tau = 0.0;
   if (t >= FAR) return 0.0;
   float leave = 0.0;
   int ended = t < end_m ? 0 : 1;
-  while (leave < FAR && t < end_m && tau <= 1e4) {
+  while (leave < FAR && t < end_m && tau <= most) {
     bool empty, smooth_;
     leave = settle_walks(t, empty, smooth_);
     float end = min(leave, end_m);
@@ -221,7 +222,7 @@ float optical_depth_ahead() {
       }
     }
     t = end;
-    if (leave >= FAR || t >= end_m || tau > 1e4) ended = 1;
+    if (leave >= FAR || t >= end_m || tau > most) ended = 1;
   }
   count_overrun(ended);
   // A level ray in a periodic layer never leaves it.

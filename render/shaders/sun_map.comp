@@ -30,7 +30,7 @@ void main() {
   ray_direction = -axes[2];
   vec4 texel = vec4(0.0);
   if (begin_planet_ray()) {
-    float tau = optical_depth_ahead();
+    float tau = optical_depth_ahead(1e4);
     float taken = 1.0 - exp(-tau);
     if (taken > 0.0) {
       float start = float(dot(axes[2], ray_start - center));

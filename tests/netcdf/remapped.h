@@ -151,11 +151,11 @@ inline double file_total(const Remapped& r, bool ice = false) {
 
 // Points of the chart under one column's hat, looked up in the model's grid.
 inline double looked_up_depth(const Remapped& r, const GridSearch& search,
-                              const std::vector<double>& depth_of_cell, Column column) {
+                              const std::vector<double>& depth_of_cell, double height_m,
+                              Column column) {
   constexpr int kPoints = 40;  // a side of a square
   const Index3& n = r.cells();
-  // Where clouds are.
-  const double reference_q = (3000 - r.chart().bottom_m()) / r.chart().thickness_m();
+  const double reference_q = (height_m - r.chart().bottom_m()) / r.chart().thickness_m();
   double sum = 0, total = 0;
   GridSearch::Found found;
   for (const Column& name : r.chart().names(column, n))
@@ -185,6 +185,7 @@ inline double column_rms(const Remapped& r, std::size_t most = 60) {
   const GridSearch search(r.grid);
   const double a = r.chart().body().equatorial_m;
   std::vector<double> depth;
+  double middle_m = 0, weight = 0;  // where the clouds are: columns lean against the chart's
   const auto nz = std::size_t(r.columns.nz);
   for (std::size_t cell = 0; cell < r.columns.interface_m.size() / (nz + 1); ++cell) {
     const double lat_deg =
@@ -197,8 +198,11 @@ inline double column_rms(const Remapped& r, std::size_t most = 60) {
     for (std::size_t k = 0; k < nz; ++k) {
       const float* h = &r.columns.interface_m[cell * (nz + 1) + k];
       const double low = double(h[0]) - (k == 0 ? r.layout.extend_below_m : 0);
-      sum +=
+      const double part =
           double(r.columns.extinction_per_m[cell * nz + k]) * a * (cube(double(h[1])) - cube(low));
+      sum += part;
+      middle_m += part * (low + double(h[1])) / 2;
+      weight += part;
     }
     depth.push_back(sum);
   }
@@ -210,7 +214,7 @@ inline double column_rms(const Remapped& r, std::size_t most = 60) {
   double gap = 0, square = 0;
   list.resize(std::min(list.size(), most));
   for (std::size_t n = 0; n < list.size(); ++n) {
-    const double truth = looked_up_depth(r, search, depth, list[n]);
+    const double truth = looked_up_depth(r, search, depth, middle_m / weight, list[n]);
     const double off = r.column_depth(list[n]) - truth;
     gap += off * off;
     square += truth * truth;

@@ -344,6 +344,30 @@ TEST_F(PlanetRenderer, TerrainStandsWhereItsMapSays) {
   }
 }
 
+TEST_F(PlanetRenderer, AnEyeInPlacesThatAreNoneSeesFiniteLight) {
+  const Slab slab(1000, 2000, 5000, 0.02);
+  auto map = std::make_shared<SurfaceMap>();
+  map->axes = glm::dmat3(kUp, glm::dvec3(1, 0, 0), kNorth);
+  map->nx = map->ny = 3;
+  map->low_rad = glm::dvec2(-0.01);
+  map->step_rad = glm::dvec2(0.01);
+  map->height_m.assign(9, 800);
+  map->water.assign(9, 0.5f);
+  const DressedSource source(slab.source, [&](VolumeInfo& info) { info.surface = map; });
+  // Under the terrain, under the ellipsoid, in the cloud, on its face, far away; the sun overhead.
+  for (const double height_m : {400.0, -30.0, 1500.0, 1000.0, 1e9}) {
+    RenderRequest request = planet_request({&source});
+    look(request, height_m, height_m > 1e6 ? -90 : 20, height_m > 1e6 ? 0.8 : 80);
+    for (const double elevation : {90.0, 0.0, -18.0}) {
+      request.sun.to_sun = sun_at(elevation);
+      const HdrImage image = render(request).image;
+      EXPECT_TRUE(
+          std::ranges::all_of(image.rgb, [](float v) { return std::isfinite(v) && v >= 0; }))
+          << height_m << ' ' << elevation;
+    }
+  }
+}
+
 TEST_F(PlanetRenderer, IceScattersAsIce) {
   const FieldSource plain(box(1000, 1000), isotropic(2), [](glm::dvec3 p) {
     return 0.004 * std::max(0.0, 1 - glm::length(p - glm::dvec3(0, 0, 500)) / 450);

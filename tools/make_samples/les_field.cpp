@@ -28,6 +28,8 @@ struct Cloud {
   double x_m, y_m, radius_m, top_m;
   std::uint64_t seed;
   std::vector<Bubble> bubbles;
+
+  double reach_m() const { return 2.2 * radius_m + 400; }
 };
 
 double smooth_min(double a, double b, double blend) {
@@ -186,23 +188,31 @@ void write_les(const NcWriter& writer, const std::filesystem::path& path, const 
     const double z_m = (double(k) + 0.5) * shape.level_m, p = pressure_Pa(z_m);
     const double clear_K = temperature_K(z_m);
     const double humidity = z_m < kBase_m + 1300 ? 0.78 + 0.16 * std::min(z_m / kBase_m, 1.0) : 0.3;
-    tbb::parallel_for(std::size_t(0), size, [&](std::size_t at) {
-      const double x_m = double(at % shape.nx) * shape.cell_m;
-      const double y_m = double(at / shape.nx) * shape.cell_m;
-      double q = 0;
-      for (const Cloud& cloud : clouds) {
-        const double dx = x_m - cloud.x_m, dy = y_m - cloud.y_m;
-        const glm::dvec3 local = {dx - width_m * std::round(dx / width_m),
-                                  dy - depth_m * std::round(dy / depth_m), z_m - kBase_m};
-        if (std::abs(local.x) < 2.2 * cloud.radius_m + 400 &&
-            std::abs(local.y) < 2.2 * cloud.radius_m + 400)
-          q = std::max(q, water_of(cloud, local, shape.cell_m));
+    tbb::parallel_for(std::size_t(0), shape.ny, [&](std::size_t j) {
+      const double y_m = double(j) * shape.cell_m;
+      const auto wrapped = [](double d, double period) {
+        return d - period * std::round(d / period);
+      };
+      std::vector<const Cloud*> near;  // that reach this row
+      for (const Cloud& cloud : clouds)
+        if (z_m < kBase_m + cloud.top_m + 120 &&
+            std::abs(wrapped(y_m - cloud.y_m, depth_m)) < cloud.reach_m())
+          near.push_back(&cloud);
+      for (std::size_t at = j * shape.nx; at < (j + 1) * shape.nx; ++at) {
+        const double x_m = double(at % shape.nx) * shape.cell_m;
+        double q = 0;
+        for (const Cloud* cloud : near) {
+          const glm::dvec3 local = {wrapped(x_m - cloud->x_m, width_m),
+                                    wrapped(y_m - cloud->y_m, depth_m), z_m - kBase_m};
+          if (std::abs(local.x) < cloud->reach_m())
+            q = std::max(q, water_of(*cloud, local, shape.cell_m));
+        }
+        water[at] = q < 1e-6 ? 0 : kept_bits(q, 6);
+        // buoyant by half a degree where it is wettest
+        temperature[at] = rounded(clear_K + std::min(400 * q, 0.5), 1.0 / 8);
+        pressure[at] = rounded(p, 1);
+        vapour[at] = kept_bits(saturated(clear_K, p) * (q > 1e-5 ? 1 : humidity), 6);
       }
-      water[at] = q < 1e-6 ? 0 : kept_bits(q, 6);
-      // buoyant by half a degree where it is wettest
-      temperature[at] = rounded(clear_K + std::min(400 * q, 0.5), 1.0 / 8);
-      pressure[at] = rounded(p, 1);
-      vapour[at] = kept_bits(saturated(clear_K, p) * (q > 1e-5 ? 1 : humidity), 6);
     });
     output.put("ql", k, water), output.put("ta", k, temperature);
     output.put("pa", k, pressure), output.put("hus", k, vapour);

@@ -34,8 +34,10 @@ std::vector<CellSize> some_cells(const HorizontalGrid& grid) {
   return sizes;
 }
 
-int splits_for(double cells) {
-  return std::max(0, int(std::ceil(std::log2(cells / kBrickCells) - 1e-9)));
+// Columns at least as narrow as asked; of the model's own width the nearest power of two.
+int splits_for(double cells, bool asked) {
+  const double exact = std::log2(cells / kBrickCells);
+  return std::max(0, int(asked ? std::ceil(exact - 1e-9) : std::round(exact)));
 }
 
 [[noreturn]] void too_fine(const char* parameter, double asked_m) {
@@ -72,7 +74,8 @@ Layout choose_layout(const Forecast& forecast, const LayoutOptions& options) {
   Layout layout;
 
   const double width_m = options.horizontal_resolution_m.value_or(cell_width_m(*grid));
-  const int horizontal = splits_for(quarter_m / width_m);
+  const int horizontal =
+      splits_for(quarter_m / width_m, options.horizontal_resolution_m.has_value());
   double area_m2 = 0;
   const std::vector<CellSize> sizes = some_cells(*grid);
   for (const CellSize& size : sizes) area_m2 += size.area_m2 / double(sizes.size());

@@ -13,8 +13,9 @@ struct LayoutOptions {
   std::optional<double> horizontal_resolution_m, vertical_resolution_m;
 };
 
-// The lattice that holds a forecast in its own resolution and aspect (lattice.md 1): columns no
-// wider than the model's cells, voxels about as high as its thinnest layer that can hold cloud.
+// The lattice that holds a forecast in its own resolution and aspect (lattice.md 1): columns about
+// as wide as the model's cells (within a factor of 1.4), voxels about as high as its thin layers
+// that hold cloud (Forecast::thinnest_layer_m).
 struct Layout {
   std::shared_ptr<const ShellChart> chart;
   Lattice lattice{{}};
