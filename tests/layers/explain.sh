@@ -25,7 +25,7 @@ case $kind in
     part 'libraries that the scene' | grep -qE 'netcdf|hdf5|openvdb|OpenImageIO|gdal' &&
       fail 'loaded a library of data'
     grep -q '^  air and ground: the scene is on no planet$' "$scratch/said" || fail 'names no planet'
-    grep -q '^  ice: no volume tells it apart' "$scratch/said" || fail 'names no second channel'
+    grep -q '^  the second channel: no volume tells ice apart' "$scratch/said" || fail 'names no second channel'
     ;;
   planet)
     [ "$planet" -gt 0 ] || fail 'ran no pass of the planet: the names are stale'
