@@ -36,13 +36,13 @@ double pixel_luminance(const HdrImage& picture, std::size_t pixel) {
   return f64::luminance(double(rgb[0]), double(rgb[1]), double(rgb[2]));
 }
 
-double picture_error(const HdrImage& picture, const HdrImage& reference) {
+double picture_error(const HdrImage& picture, const HdrImage& reference, Counts counts) {
   if (picture.width != reference.width || picture.height != reference.height)
     throw std::invalid_argument("picture_error: pictures differ in size");
   std::vector<PixelPair> pairs;
   for (std::size_t p = 0; p < reference.optical_depth.size(); ++p)
 #if !defined(NEPHO_MUTANT_METRIC_ALL_PIXELS)
-    if (double(reference.optical_depth[p]) > kShownOpticalDepth)
+    if (counts == Counts::kAll || double(reference.optical_depth[p]) > kShownOpticalDepth)
 #endif
       pairs.push_back({pixel_luminance(picture, p), pixel_luminance(reference, p)});
   return relative_rms(pairs);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "renderer.h"
@@ -18,8 +19,11 @@ struct PixelPair {
 // the picture is not.
 double relative_rms(std::span<const PixelPair> pixels);
 
-// Pixels count by the reference's optical depth. Throws std::invalid_argument where sizes differ.
-double picture_error(const HdrImage& picture, const HdrImage& reference);
+// Pixels count by the reference's optical depth, or all of them: over a planet there is no nothing.
+// Throws std::invalid_argument where sizes differ.
+enum class Counts : std::uint8_t { kWithCloud, kAll };
+double picture_error(const HdrImage& picture, const HdrImage& reference,
+                     Counts counts = Counts::kWithCloud);
 
 double pixel_luminance(const HdrImage& picture, std::size_t pixel);
 

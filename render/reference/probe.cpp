@@ -12,6 +12,7 @@
 #include "physics/physics_cpp.h"
 #include "reference/error_metric.h"
 #include "reference/light_model_table.h"
+#include "reference/planet_model.h"
 #include "reference/ray_march.h"
 
 namespace nepho {
@@ -27,11 +28,28 @@ std::uint64_t morton(std::uint32_t x, std::uint32_t y) {
   return code;
 }
 
+Ray pixel_ray(const RenderRequest& request, const HdrImage& picture, std::size_t pixel) {
+  const auto width = std::size_t(picture.width);
+  return camera_ray(request.camera, picture.width, picture.height, int(pixel % width),
+                    int(pixel / width));
+}
+
+// Those that count: with some cloud, or, over a planet, all but those on the sun's disc, which
+// would be most of any mean.
+std::vector<std::size_t> counted_pixels(const RenderRequest& request, const HdrImage& picture,
+                                        const PlanetModel* planet) {
+  std::vector<std::size_t> pixels;
+  for (std::size_t p = 0; p < picture.optical_depth.size(); ++p) {
+    const bool counts = planet ? !planet->sees_sun(pixel_ray(request, picture, p).direction)
+                               : double(picture.optical_depth[p]) > kShownOpticalDepth;
+    if (counts) pixels.push_back(p);
+  }
+  return pixels;
+}
+
 // One pixel of each of `count` patches of equal size.
-std::vector<std::size_t> choose_pixels(const HdrImage& picture, int count, std::uint64_t seed) {
-  std::vector<std::size_t> shown;
-  for (std::size_t p = 0; p < picture.optical_depth.size(); ++p)
-    if (double(picture.optical_depth[p]) > kShownOpticalDepth) shown.push_back(p);
+std::vector<std::size_t> choose_pixels(std::vector<std::size_t> shown, const HdrImage& picture,
+                                       int count, std::uint64_t seed) {
   const auto width = std::size_t(picture.width);
   std::ranges::sort(shown, {}, [&](std::size_t p) {
     return morton(std::uint32_t(p % width), std::uint32_t(p / width));
@@ -64,27 +82,30 @@ struct Probe {
 }  // namespace
 
 ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
-                             const HdrImage& picture) {
+                             const HdrImage& picture, std::shared_ptr<const AirTables> tables) {
   const RenderSettings& settings = request.settings;
   ErrorEstimate estimate;
+  if (settings.probe_pixels <= 0) return estimate;
+  std::shared_ptr<const PlanetModel> planet;
+  if (request.planet) planet = std::make_shared<const PlanetModel>(request, std::move(tables));
   const std::vector<std::size_t> pixels =
-      choose_pixels(picture, settings.probe_pixels, settings.seed);
+      choose_pixels(counted_pixels(request, picture, planet.get()), picture, settings.probe_pixels,
+                    settings.seed);
   estimate.probe_pixels = int(pixels.size());
   if (pixels.empty()) return estimate;
 
   const CutLevels cut_levels(cut);
   const NoisyCutLevels noisy_levels(cut, settings.seed);
   const FinestLevels finest_levels(request.volumes, kFinestCache_MiB);
-  const RayMarch cut_march(cut_levels, request), noisy_march(noisy_levels, request);
+  const RayMarch cut_march(cut_levels, request, {}, planet),
+      noisy_march(noisy_levels, request, {}, planet);
   std::optional<RayMarch> finest_march;
-  if (!holds_everything(cut)) finest_march.emplace(finest_levels, request);
+  if (!holds_everything(cut)) finest_march.emplace(finest_levels, request, MarchSettings{}, planet);
   const int octaves = settings.light == Light::kOctaves ? settings.octaves : 1;
 
   std::vector<Probe> probes(pixels.size());
   tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
-    const auto width = std::size_t(picture.width);
-    const Ray ray = camera_ray(request.camera, picture.width, picture.height,
-                               int(pixels[p] % width), int(pixels[p] / width));
+    const Ray ray = pixel_ray(request, picture, pixels[p]);
     const MarchResult exact = cut_march.trace(ray);
     Probe& probe = probes[p];
     probe.picture = pixel_luminance(picture, pixels[p]);
