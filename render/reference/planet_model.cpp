@@ -107,7 +107,11 @@ glm::dvec3 PlanetModel::ground_W_per_m2_sr_nm(const Ray& ray, double t_m,
 
   const double g = cloud_asymmetry_, mu_sun = std::max(glm::dot(spot.up, to_sun_), 0.0);
   const double sky_part = f64::cloud_daylight(2 * tau_above, tau_above, 0.5, g);
+#if defined(NEPHO_MUTANT_REFERENCE_NO_GROUND_SHADOW)
+  const double direct = 1;
+#else
   const double direct = std::exp(-tau_sun);
+#endif
   const double scattered =
       std::max(f64::cloud_daylight(tau_sun, tau_above, mu_sun, g) - direct, 0.0);
   const SkyLight sky = sky_light(place);

@@ -131,9 +131,7 @@ RayMarch::Trace::End RayMarch::Trace::end_at(double t_m) const {
   End end{t_m, march_.light_at(ray_.origin_m + t_m * ray_.direction), {}};
   if (!air_) return end;
   end.air = air_->knot(t_m);
-#if !defined(NEPHO_MUTANT_REFERENCE_NO_AIR_SHADOW)
   end.air.sunlit *= std::exp(-end.light.tau_sun);
-#endif
   return end;
 }
 
@@ -204,7 +202,11 @@ bool RayMarch::Trace::too_curved(double s0, double s1, double weight, double mos
 
 glm::dvec3 RayMarch::Trace::phases(std::size_t volume, const End& end) const {
   const Octaves &all = scattering_[volume], &ice = ice_scattering_[volume];
+#if defined(NEPHO_MUTANT_REFERENCE_NO_ICE)
+  const double part = 0;
+#else
   const double part = ice.empty() ? 0 : walks_[volume].ice_part(end.t_m);
+#endif
   glm::dvec3 sum{0.0};
   for (int n = 0; n < march_.octaves_; ++n) {
     const auto i = std::size_t(n);
