@@ -11,17 +11,17 @@ namespace nepho {
 
 double relative_rms(std::span<const PixelPair> pixels) {
   if (pixels.empty()) return -1;
-  double squares = 0, sum = 0;
+  double squares = 0, sum = 0, n = 0;
   for (const PixelPair& p : pixels) {
     const double difference = p.luminance - p.reference;
 #if defined(NEPHO_MUTANT_METRIC_MEAN)
-    squares += std::abs(difference);
+    squares += p.weight * std::abs(difference);
 #else
-    squares += difference * difference;
+    squares += p.weight * difference * difference;
 #endif
-    sum += p.reference;
+    sum += p.weight * p.reference;
+    n += p.weight;
   }
-  const auto n = double(pixels.size());
 #if defined(NEPHO_MUTANT_METRIC_MEAN)
   const double rms = squares / n;
 #else

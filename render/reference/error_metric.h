@@ -14,6 +14,7 @@ inline constexpr double kShownOpticalDepth = 0.01;  // a pixel counts above it
 
 struct PixelPair {
   double luminance, reference;
+  double weight = 1;  // how many pixels it stands for
 };
 // Of pixels that count. Negative where there are none; infinite where the reference is black and
 // the picture is not.

@@ -271,7 +271,7 @@ TEST_F(PlanetReference, TheErrorLineHoldsOnAShell) {
   RenderRequest request = planet_request({&clouds});
   request.settings.budget_mib = 0.6;
   request.sun.to_sun = sun_at(40, 100);
-  look(request, 1.2e6, -40, 50);
+  look(request, 1.2e6, -70, 45);
   expect_error_line("a shell from 1200 km", request);
 }
 
