@@ -74,13 +74,12 @@ AirKnot AirMarch::knot(double t_m) const {
   return knot;
 }
 
-AirMarch::Node AirMarch::node(double t_m, bool shadows) const {
+AirMarch::Node AirMarch::node(double t_m) const {
   const glm::dvec3 point_m = ray_.origin_m + t_m * ray_.direction;
   Node node{t_m, knot(t_m), planet_.place(point_m)};
 #if !defined(NEPHO_MUTANT_REFERENCE_NO_AIR_SHADOW)
-  if (shadows && luminance(node.knot.sunlit) > 0 &&
-      planet_.lowest_towards_sun_m(node.place) < shadows_m_)
-    node.lit = lit_(point_m, node.place);
+  if (luminance(node.knot.sunlit) > 0 && planet_.lowest_towards_sun_m(node.place) < shadows_m_)
+    node.lit = lit_(point_m);
 #endif
   return node;
 }
@@ -125,7 +124,7 @@ std::vector<double> AirMarch::cuts(double begin_m, double end_m) const {
 }
 
 void AirMarch::refine(const Node& a, const Node& m, const Node& b, int halvings, Sum& sum) const {
-  const Node q1 = node(0.5 * (a.t_m + m.t_m), true), q2 = node(0.5 * (m.t_m + b.t_m), true);
+  const Node q1 = node(0.5 * (a.t_m + m.t_m)), q2 = node(0.5 * (m.t_m + b.t_m));
   const Panel whole = panel(a, m, b), first = panel(a, q1, m), second = panel(m, q2, b);
   const glm::dvec3 both = first.radiance + first.transmittance * second.radiance;
   const glm::dvec3 seen = sum.transmittance;
@@ -148,12 +147,12 @@ void AirMarch::add(double begin_m, double end_m, glm::dvec3& radiance,
   end_m = std::min(end_m, inside_.end_m);
   if (!(end_m > begin_m)) return;
   Sum sum{radiance, transmittance};
-  std::vector<Node> nodes{node(begin_m, true)};
+  std::vector<Node> nodes{node(begin_m)};
   glm::dvec3 light{0.0}, through = transmittance;
   for (const double end : cuts(begin_m, end_m)) {
     if (!(end > nodes.back().t_m)) continue;
-    nodes.push_back(node(0.5 * (nodes.back().t_m + end), true));
-    nodes.push_back(node(end, true));
+    nodes.push_back(node(0.5 * (nodes.back().t_m + end)));
+    nodes.push_back(node(end));
     const std::size_t n = nodes.size();
     const Panel rough = panel(nodes[n - 3], nodes[n - 2], nodes[n - 1]);
     light += through * rough.radiance;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "reference/planet_model.h"
 
@@ -15,11 +16,12 @@ struct AirKnot {
 class AirMarch {
  public:
   // Part of the sun's beam that clouds let through to a point.
-  using Lit = std::function<double(const glm::dvec3& point_m, const PlanetModel::Place&)>;
+  using Lit = std::function<double(const glm::dvec3& point_m)>;
 
   // `eye_m`: the eye's distance from the ray's origin; shadows below `shadows_m` of height are
-  // looked for at every tenth of the distance to it. Intervals are halved while two halves differ
-  // from the whole by more than `tolerance` of what the ray has collected.
+  // looked for at every tenth of the distance to it, and every 250 m next to it. Intervals are
+  // halved while two halves differ from the whole by more than `tolerance` of what the ray has
+  // collected.
   AirMarch(const PlanetModel& planet, const Ray& ray, double eye_m, double shadows_m, Lit lit,
            double tolerance);
 
@@ -40,7 +42,7 @@ class AirMarch {
     glm::dvec3 radiance, transmittance;
   };
   struct Sum;
-  Node node(double t_m, bool shadows) const;
+  Node node(double t_m) const;
   static Panel panel(const Node& a, const Node& m, const Node& b);
   std::vector<double> cuts(double begin_m, double end_m) const;
   void refine(const Node& a, const Node& m, const Node& b, int halvings, Sum& sum) const;

@@ -144,7 +144,8 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   estimate.level_of_detail = relative_rms(level_of_detail);
   estimate.quantisation = relative_rms(quantisation);
   estimate.light_model = relative_rms(light_model);
-  estimate.light_model_basis = "table, slabs";
+  estimate.light_model_basis =
+      planet ? "table, slabs; all terms over the whole picture" : "table, slabs";
   return estimate;
 }
 

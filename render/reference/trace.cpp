@@ -43,9 +43,7 @@ RayMarch::Trace::Trace(const RayMarch& march, const Ray& ray, double eye_m)
       ice_scattering_.back() = octaves(look.ice_phase_table, look.ice_asymmetry, one_minus_cos);
   }
   if (!march.planet_ || !march.planet_->has_air()) return;
-  const auto lit = [&march](const glm::dvec3& point_m, const PlanetModel::Place&) {
-    return march.sun_passed(point_m);
-  };
+  const auto lit = [&march](const glm::dvec3& point_m) { return march.sun_passed(point_m); };
   air_.emplace(*march.planet_, ray, eye_m, march.cloud_top_m_, lit, kAirTolerance);
 }
 
