@@ -246,8 +246,8 @@ TEST(Remap, ClearBelowLosesNoLightThatMatters) {
 TEST(Remap, ResolutionFollowsTheModelAndTheUser) {
   const auto forecast = synthetic_forecast("mercator");
   const netcdf::Layout own = choose_layout(*forecast, {});
-  EXPECT_LE(own.voxel_width_m, netcdf::cell_width_m(*forecast->cells));
-  EXPECT_GE(own.voxel_width_m, netcdf::cell_width_m(*forecast->cells) / 2);
+  EXPECT_LE(own.voxel_width_m, 1.415 * netcdf::cell_width_m(*forecast->cells));
+  EXPECT_GE(own.voxel_width_m, netcdf::cell_width_m(*forecast->cells) / 1.415);
   EXPECT_GE(own.voxel_height_m, 50);
   const netcdf::Layout asked = choose_layout(*forecast, {2000.0, 30.0});
   EXPECT_LE(asked.voxel_width_m, 2000);
