@@ -33,5 +33,32 @@ TEST(RealFiles, Katrina) {
   print(*f);
 }
 
+TEST(RealFiles, GfsPackedCf) {
+  const auto f = open("nc/gfs_2p5deg_20110110_f120_DERIVED_cf_packed.nc");
+  print(*f);
+}
+TEST(RealFiles, Um) {
+  const auto f = open("nc/um_38lev_cosp_input_2d.nc");
+  print(*f);
+}
+TEST(RealFiles, Icon) {
+  const auto f = open("nc/icon_les_stratocumulus_L150.nc");
+  print(*f);
+}
+TEST(RealFiles, Edges) {
+  for (const char* name : {"byte_truncated", "netcdf-4d", "rotated_pole", "scale_offset"}) try {
+      open(std::string("edge/gdal_") + name + ".nc");
+      ADD_FAILURE() << name;
+    } catch (const Error& e) {
+      std::printf("measured: %s\n", e.what());
+    }
+  try {
+    open("edge/psyplot_icon_test.nc");
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    std::printf("measured: %s\n", e.what());
+  }
+}
+
 }  // namespace
 }  // namespace nepho::netcdf

@@ -7,7 +7,7 @@
 namespace nepho::netcdf {
 namespace {
 
-const std::array<const Convention*, 1> kConventions = {&kWrf};
+const std::array<const Convention*, 2> kConventions = {&kWrf, &kCf};
 
 std::unique_ptr<Forecast> open_file(const std::string& path, const OpenRequest& request) {
   auto file = std::make_shared<const NcFile>(path, request.io_lock);

@@ -34,7 +34,6 @@ const VariableNames kLandFraction = {{"land_area_fraction", "land_binary_mask"},
 const VariableNames kHalfLevelHeight = {
     {"geometric_height_at_half_level_center", "geometric_height_at_half_level"},
     {"z_ifc", "hhl", "zhalf", "z_w", "height_interface"}};
-const VariableNames kLowerInterfaceHeight = {{}, {"height_half"}};
 const VariableNames kFullLevelHeight = {
     {"altitude", "geometric_height_at_full_level_center", "height_above_mean_sea_level",
      "height_above_geopotential_datum", "height"},

@@ -19,8 +19,7 @@ struct VariableNames {
 namespace names {
 extern const VariableNames kTemperature, kPressure, kSurfacePressure, kSpecificHumidity,
     kVapourMixingRatio, kRelativeHumidity, kCloudFraction, kDropletNumber, kTerrain, kLandFraction,
-    kHalfLevelHeight, kLowerInterfaceHeight, kFullLevelHeight, kGeopotentialHeight, kGeopotential,
-    kLatitude, kLongitude;
+    kHalfLevelHeight, kFullLevelHeight, kGeopotentialHeight, kGeopotential, kLatitude, kLongitude;
 }
 
 // The first variable that answers to the names, standard names before names, and that `accept`
