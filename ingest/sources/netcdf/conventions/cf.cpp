@@ -216,6 +216,14 @@ Model model_of(const std::shared_ptr<CfFile>& cf) {
   model.utc_ns = cf->times_ns(model);
   const auto accept = [cf](const NcVariable& v) { return cf->reader->is_field(v, cf->roles.z); };
   model.water = find_water(file, accept);
+  const bool has_ice =
+      std::ranges::any_of(model.water, [](const WaterVariable& w) { return is_ice(w.species); });
+  for (WaterVariable& water : model.water)
+    if (!has_ice && is_whole_condensate(water)) {
+      water.freezes_below_K = kWholeCondensateFreezes_K;
+      model.assumptions.push_back(water.variable->name +
+                                  " holds liquid and ice: ice below -15 degC is assumed.");
+    }
   model.cloud_fraction = find_named(file, names::kCloudFraction, accept);
   model.droplet_number = find_named(file, names::kDropletNumber, accept);
   cf->find_air();

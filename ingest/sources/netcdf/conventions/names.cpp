@@ -68,7 +68,6 @@ const std::vector<WaterNames>& water_table() {
   static const std::vector<WaterNames> table = {
       {kCloudWater,
        {"mass_fraction_of_cloud_liquid_water_in_air",
-        "mass_fraction_of_cloud_condensed_water_in_air",
         "mass_fraction_of_stratiform_cloud_liquid_water_in_air"},
        {},
        Basis::kMoistAir},
@@ -89,6 +88,7 @@ const std::vector<WaterNames>& water_table() {
       {kCloudWater, {}, {"cloud_water"}, Basis::kMoistAir},
       {kCloudWater, {}, {"ql"}, Basis::kMoistAir},
       {kCloudWater, {}, {"lwc"}, Basis::kVolume},
+      {kCloudWater, {"mass_fraction_of_cloud_condensed_water_in_air"}, {}, Basis::kMoistAir},
       {kCloudIce,
        {"mass_fraction_of_cloud_ice_in_air", "mass_fraction_of_stratiform_cloud_ice_in_air"},
        {},
@@ -144,7 +144,7 @@ WaterVariable water_variable(const NcFile& file, const NcVariable& variable,
   } catch (const Error&) {
     refuse("the variable's units are not known", "\"" + unit + "\"");
   }
-  WaterVariable result{row.species, &variable, row.basis, parsed.factor, false};
+  WaterVariable result{row.species, &variable, row.basis, parsed.factor, 0};
 #ifdef NEPHO_MUTANT_UNITS_1000
   result.to_si = 1;
 #endif
@@ -190,19 +190,24 @@ std::vector<WaterVariable> find_water(const NcFile& file,
 
 namespace {
 
+// Short enough for one message: standard names are told by their pattern.
 std::string known_water_names() {
   std::string text;
   for (const WaterNames& row : water_table()) {
     if (row.species != Species::kCloudWater && row.species != Species::kCloudIce) continue;
-    for (const auto& list : {row.names, row.standard_names})
-      for (const std::string& name : list) text += (text.empty() ? "" : ", ") + name;
+    for (const std::string& name : row.names) text += (text.empty() ? "" : ", ") + name;
   }
-  return text;
+  return text + ", or a standard_name mass_fraction_of_cloud_liquid_water_in_air or its like";
 }
 
-constexpr std::size_t kMostNames = 40;  // of a file with hundreds of variables
+constexpr std::size_t kMostNames = 12;  // of a file with hundreds of variables
 
 }  // namespace
+
+bool is_whole_condensate(const WaterVariable& water) {
+  return lower(water.variable->name) == "clwmr" ||
+         water.variable->text("standard_name") == "mass_fraction_of_cloud_condensed_water_in_air";
+}
 
 void require_water(const NcFile& file, const std::vector<WaterVariable>& water) {
   if (!water.empty()) return;
