@@ -62,7 +62,7 @@ struct RenderReport {
   std::vector<PassReport> passes;
   std::vector<VolumeReport> volumes;
   std::uint64_t atlas_bytes = 0, sun_bytes = 0, node_bytes = 0, staging_bytes = 0;  // in the budget
-  std::uint64_t image_bytes = 0, source_bytes = 0;                                  // apart from it
+  std::uint64_t image_bytes = 0, source_bytes = 0, planet_bytes = 0;                // apart from it
 };
 
 struct RenderResult {

@@ -34,8 +34,10 @@ struct VolumeSpec {
   std::optional<GeodeticPlace> place;  // absent: free, at the ECEF origin
   std::optional<Phase> phase;          // absent: the source's own
   std::optional<glm::dvec3> co_albedo;
-  std::optional<double> time_s;  // absent: the first
-  std::string where = {};        // file, line, column and field, for messages
+  // One of the source's times, since its origin or as a date; both absent: the first with cloud.
+  std::optional<double> time_s;
+  std::optional<std::int64_t> utc_ns;  // since 1970-01-01T00:00:00 UTC
+  std::string where = {};              // file, line, column and field, for messages
 };
 
 struct Camera {
@@ -99,15 +101,30 @@ struct RenderSettings {
   int probe_pixels = 128;  // pixels on which the error line is measured; 0 = none
 };
 
+// What a view of a planet's weather is worked out to be; kAuto: a part obliquely, or the globe.
+enum class View : std::uint8_t { kAuto, kOblique, kGlobe, kGround };
+
+// An eye that stands on a planet's ground, or on its sea.
+struct Stand {
+  double latitude_deg = 0, longitude_deg = 0;
+  double eye_height_m = 2;  // above the ground
+  // Clockwise from north, and above the horizon; absent: towards the best cloud.
+  std::optional<double> azimuth_deg, elevation_deg;
+};
+
 // What a scene says of its camera and its sun; what is absent is worked out from the volumes.
 struct CameraSpec {
   std::optional<glm::dvec3> eye_m, target_m, up;  // absent: frames the volumes
   std::optional<double> vertical_fov_rad;
+  std::optional<Stand> stand;  // instead of eye and target
+  View view = View::kAuto;     // where eye and target are absent
 };
 struct SunSpec {
-  // Both absent: on a planet the time of the first volume that has one, else 40 degrees high,
-  // behind the camera's left shoulder. Both given: an error.
+  // All three absent: on a planet the time of the first volume that has one, else 40 degrees high,
+  // behind the camera's left shoulder. More than one given: an error.
   std::optional<glm::dvec3> to_sun;
+  // Azimuth and elevation over the horizon of where the camera looks: for scenes without a place.
+  std::optional<glm::dvec2> azimuth_elevation_deg;
   std::optional<std::int64_t> utc_ns;  // since 1970-01-01T00:00:00 UTC: where the sun stands then
   std::optional<glm::dvec3> irradiance_W_per_m2_nm;
 };
@@ -122,6 +139,7 @@ struct Scene {
   std::optional<Sky> sky;  // absent: a clear day's; not together with a planet
   std::optional<Planet>
       planet;  // absent: the Earth, where a source's volume is on_planet and no sky is given
+  bool no_planet = false;  // nor that one
   RenderSettings render;
   std::optional<double> exposure_ev;  // absent: from the picture
   ToneMap tone_map = ToneMap::kAces;

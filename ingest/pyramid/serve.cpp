@@ -30,29 +30,54 @@ Status guarded(Body&& body) noexcept {
 
 }  // namespace
 
-Status serve_summary(const VolumeInfo& info, const SparsePyramid& pyramid, NodeKey key,
+Status serve_summary(const VolumeInfo& info, const ServedPyramids& pyramids, NodeKey key,
                      double time_s, NodeSummary& summary) noexcept {
   if (const Status status = check_request(info, key, time_s); status != Status::kOk)
     return refused(status);
-  return guarded([&] { summary = pyramid.summary(key); });
+  return guarded([&] {
+    summary = pyramids.extinction.summary(key);
+    if (!pyramids.ice_extinction) return;
+    const NodeSummary ice = pyramids.ice_extinction->summary(key);
+    summary.error_bound_per_m = std::max(summary.error_bound_per_m, ice.error_bound_per_m);
+    if (summary.constant && ice.max_extinction_per_m > 0) {
+      summary.constant = false;
+      summary.constant_extinction_per_m = 0;
+    }
+  });
 }
 
-Status serve_read(const VolumeInfo& info, const SparsePyramid& pyramid, NodeKey key, double time_s,
-                  BrickView brick) noexcept {
+Status serve_read(const VolumeInfo& info, const ServedPyramids& pyramids, NodeKey key,
+                  double time_s, BrickView brick) noexcept {
   if (const Status status = check_request(info, key, time_s); status != Status::kOk)
     return refused(status);
   for (const ChannelView& view : brick)
-    if (view.channel != Channel::kExtinction) return refused(Status::kNoSuchChannel);
+    if (std::ranges::find(info.channels, view.channel, &ChannelInfo::channel) ==
+            info.channels.end() ||
+        (view.channel != Channel::kExtinction && view.channel != Channel::kIceExtinction))
+      return refused(Status::kNoSuchChannel);
   return guarded([&] {
-    BrickSamples samples;
-    pyramid.samples(key, samples.data());
     for (ChannelView& view : brick) {
+      BrickSamples samples{};
+      if (view.channel == Channel::kExtinction)
+        pyramids.extinction.samples(key, samples.data());
+      else if (pyramids.ice_extinction)
+        pyramids.ice_extinction->samples(key, samples.data());
       const Quantised coded = quantise(samples, {view.codes, kBrickVolume});
       view.scale = coded.scale;
       view.offset = coded.offset;
       view.max_abs_error = coded.max_abs_error;
     }
   });
+}
+
+Status serve_summary(const VolumeInfo& info, const SparsePyramid& pyramid, NodeKey key,
+                     double time_s, NodeSummary& summary) noexcept {
+  return serve_summary(info, ServedPyramids{pyramid, nullptr}, key, time_s, summary);
+}
+
+Status serve_read(const VolumeInfo& info, const SparsePyramid& pyramid, NodeKey key, double time_s,
+                  BrickView brick) noexcept {
+  return serve_read(info, ServedPyramids{pyramid, nullptr}, key, time_s, brick);
 }
 
 double largest_code_error(const SparsePyramid& pyramid, int roots) {

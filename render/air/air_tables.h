@@ -19,14 +19,18 @@ struct AirTable {
 };
 
 struct AirTables {
-  AirTable transmittance;  // 256 x 64: from (mu, height) to the top; meaningless below the horizon
-  // 32 x 32, by (mu of the sun, height): radiance of second and all higher orders, even in all
-  // directions, as a source: multiply by the scattering coefficient.
-  AirTable multiple;
-  // 64 x 32 each, by (mu of the sun, height): mean radiance of air and sunlit ground, without
-  // clouds, over the directions within 45 degrees of up, between, and within 45 degrees of down
-  // (what sky_source of physics/sky.glsl takes as zenith, horizon, below).
-  AirTable sky_up, sky_side, sky_down;
+  // 256 x 192: optical depth from (mu, height) to the top, which interpolates better than its
+  // exponential; meaningless below the horizon. air_depth_coordinates.
+  AirTable depth;
+  // The others: 253 x 32, by (mu of the sun, height). air_light_coordinates.
+  // Mean radiance over all directions of light that air or ground has scattered, and half the mean
+  // of it times P2(mu): the source of the next orders, all of them together (air_emission). The
+  // first alone, as Hillaire has it, is 4.5 % off in Rayleigh slabs; both are 1.3 % off.
+  AirTable multiple, multiple_p2;
+  // Mean radiance of air and sunlit ground, without clouds, over the directions within 45 degrees
+  // of up, between, and within 45 degrees of down (what sky_source of physics/sky.glsl takes as
+  // zenith, horizon, below); sky_low: the upper half of sky_side (ground.glsl).
+  AirTable sky_up, sky_side, sky_down, sky_low;
 };
 
 // `ground_albedo`: of what lies under most of the view. About 0.2 CPU s.

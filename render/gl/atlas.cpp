@@ -10,11 +10,12 @@ namespace {
 constexpr std::uint64_t kNever = std::uint64_t(1) << 62;  // above any budget
 
 std::uint64_t bytes(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit,
-                    std::uint64_t light_texel) {
+                    std::uint64_t light_texel, bool ice = false) {
   const auto atlas = atlas_size(bricks), light = atlas_size(lit);
   if (atlas[0] == 0 || light[0] == 0) return kNever;
   return nodes * sizeof(NodeRecord) + bricks * (sizeof(BrickRecord) + sizeof(LeafBrick)) +
-         lit * sizeof(LitRecord) + 2 * texels(atlas) + light_texel * texels(light);
+         lit * sizeof(LitRecord) + 2 * texels(atlas) + light_texel * texels(light) +
+         (ice ? bricks * (sizeof(BrickRecord) + sizeof(IceCodes)) + 2 * texels(atlas) : 0);
 }
 
 }  // namespace
@@ -47,6 +48,13 @@ std::uint64_t bytes_without_sky(std::uint64_t nodes, std::uint64_t bricks, std::
   return bytes(nodes, bricks, lit, 2);
 }
 
+std::uint64_t bytes_with_sky_and_ice(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit) {
+  return bytes(nodes, bricks, lit, 8, true);
+}
+std::uint64_t bytes_with_ice(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit) {
+  return bytes(nodes, bricks, lit, 2, true);
+}
+
 Texture make_texture_3d(const std::array<int, 3>& size, GLenum format) {
   GLuint id = 0;
   glCreateTextures(GL_TEXTURE_3D, 1, &id);
@@ -60,18 +68,35 @@ Texture make_texture_3d(const std::array<int, 3>& size, GLenum format) {
   return texture;
 }
 
-Texture upload_bricks(const Forest& forest, const std::array<int, 3>& size) {
+namespace {
+
+// `codes_of`: of a brick, or null for a tile that is left as it is.
+template <class CodesOf>
+Texture upload(const Forest& forest, const std::array<int, 3>& size, CodesOf codes_of) {
   Texture atlas = make_texture_3d(size, GL_R16);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   std::uint64_t slot = 0;
   for (const VolumeTree& tree : forest.volumes)
     for (const LeafBrick& brick : tree.bricks) {
       const auto [x, y, z] = tile_origin(slot++, size);
+      const std::uint16_t* codes = codes_of(brick);
+      if (!codes) continue;
       glTextureSubImage3D(atlas.id(), 0, x, y, z, kTileSide, kTileSide, kTileSide, GL_RED,
-                          GL_UNSIGNED_SHORT, brick.codes.data());
+                          GL_UNSIGNED_SHORT, codes);
     }
   check_errors("upload of bricks");
   return atlas;
+}
+
+}  // namespace
+
+Texture upload_bricks(const Forest& forest, const std::array<int, 3>& size) {
+  return upload(forest, size, [](const LeafBrick& brick) { return brick.codes.data(); });
+}
+Texture upload_ice(const Forest& forest, const std::array<int, 3>& size) {
+  return upload(forest, size, [](const LeafBrick& brick) {
+    return brick.ice ? brick.ice->codes.data() : nullptr;
+  });
 }
 
 }  // namespace nepho::gl

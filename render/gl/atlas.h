@@ -24,11 +24,15 @@ std::array<int, 3> tile_origin(std::uint64_t tile, const std::array<int, 3>& siz
 // Bytes that nodes, bricks and light tiles take on the GPU, staging included: TileCost::total.
 std::uint64_t bytes_with_sky(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit);
 std::uint64_t bytes_without_sky(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit);
+// With a second atlas, and at most as many bricks of ice.
+std::uint64_t bytes_with_sky_and_ice(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit);
+std::uint64_t bytes_with_ice(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit);
 
 // Linear filter, clamped. Made once: on llvmpipe a change of sampler state compiles anew.
 Texture make_texture_3d(const std::array<int, 3>& size, GLenum format);
 
-// The bricks' codes, R16 UNORM.
+// The bricks' codes, R16 UNORM; of their ice at the same places, tiles without it are not written.
 Texture upload_bricks(const Forest& forest, const std::array<int, 3>& size);
+Texture upload_ice(const Forest& forest, const std::array<int, 3>& size);
 
 }  // namespace nepho::gl

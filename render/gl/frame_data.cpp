@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "gl/atlas.h"
 #include "optics/phase_table.h"
+#include "tree/source_verbs.h"
 
 namespace nepho::gl {
 namespace {
@@ -136,26 +137,40 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
     if (node.kind == NodeKind::kConstant || node.kind == NodeKind::kBrick) {
       record.first_child_or_lit = first_lit + node.lit;
       const auto [i, j, k] = node.key.ijk();
-      scene.lit[first_lit + node.lit] = {volume, node.key.root(), node.key.level(),
-                                         int(i), int(j),          int(k)};
+      if (node.seen)
+        scene.lit[first_lit + node.lit] = {volume, node.key.root(), node.key.level(),
+                                           int(i), int(j),          int(k)};
     }
     scene.nodes.push_back(record);
   }
   for (const LeafBrick& brick : tree.bricks)
     scene.bricks.push_back({brick.scale * 65535.0f, brick.offset});
+  if (!scene.has_ice) return;
+  for (const LeafBrick& brick : tree.bricks)
+    scene.ice.push_back(brick.ice ? BrickRecord{brick.ice->scale * 65535.0f, brick.ice->offset}
+                                  : BrickRecord{0, 0});
 }
 
 }  // namespace
 
-bool lights(const Sky& sky) {
+bool sky_lights(const RenderRequest& request) {
+  if (request.planet) return request.planet->air.has_value();
+  const Sky& sky = request.sky;
   const glm::dvec3 black(0.0);
   return sky.zenith_W_per_m2_sr_nm != black || sky.horizon_W_per_m2_sr_nm != black ||
          sky.below_W_per_m2_sr_nm != black;
 }
 
+bool tells_ice(const RenderRequest& request) {
+  return std::ranges::any_of(
+      request.volumes, [](const RenderVolume& volume) { return has_ice(volume.source->info()); });
+}
+
 Refinement refinement_of(const RenderRequest& request) {
   Refinement refinement{request.camera, request.settings, {}};
-  refinement.cost.total = lights(request.sky) ? bytes_with_sky : bytes_without_sky;
+  const bool sky = sky_lights(request);
+  refinement.cost.total = tells_ice(request) ? (sky ? bytes_with_sky_and_ice : bytes_with_ice)
+                                             : (sky ? bytes_with_sky : bytes_without_sky);
   return refinement;
 }
 
@@ -168,17 +183,27 @@ GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
   scene.frame.height = settings.height;
   scene.frame.step_voxels = float(settings.step_voxels.value_or(2));
   scene.frame.tolerance = float(settings.tolerance);
-  scene.sky = lights(request.sky);
+  scene.sky = sky_lights(request);
+  scene.has_ice = tells_ice(request);
   std::vector<Phase> rows;
   for (std::size_t v = 0; v < forest.volumes.size(); ++v) {
     const RenderVolume& volume = request.volumes[v];
     VolumeData data = make_volume(scene, *volume.source);
     data.phase_row = phase_row(scene, rows, volume.phase);
     data.asymmetry = float(phase_bulk(volume.phase).asymmetry[1]);
+    if (scene.has_ice) {
+      data.ice_phase_row = phase_row(scene, rows, volume.ice_phase);
+      data.ice_asymmetry = float(phase_bulk(volume.ice_phase).asymmetry[1]);
+    }
     for (int c = 0; c < 3; ++c) data.albedo[c] = float(1 - volume.co_albedo[c]);
     if (volume.co_albedo != glm::dvec3(0)) scene.absorbs = true;
     add_nodes(scene, forest.volumes[v], int(v));
     scene.volumes.push_back(data);
+  }
+  if (request.planet) {
+    const Ellipsoid& body = request.planet->body;
+    scene.frame.ground_radius_m = body.equatorial_m;
+    scene.frame.ground_z_scale = body.equatorial_m / body.polar_m;
   }
   return scene;
 }

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <ctime>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/error.h"
 #include "gl/atlas.h"
 #include "gl/frame_data.h"
 #include "gl/object.h"
+#include "gl/planet_passes.h"
 #include "reference/probe.h"
 #include "tree/forest.h"
 
@@ -54,9 +56,10 @@ class Renderer {
   const RenderRequest& request_;
   Forest forest_;
   gl::GpuScene scene_;
+  std::optional<gl::PlanetPasses> planet_;  // absent: no planet
   std::array<int, 3> atlas_size_{}, light_size_{};
-  gl::Texture atlas_, light_atlas_, picture_;
-  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_;
+  gl::Texture atlas_, ice_atlas_, light_atlas_, picture_;
+  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_, ice_;
   RenderResult result_;
 };
 
@@ -80,7 +83,7 @@ std::string Renderer::defines(bool lit) const {
   const auto define = [&](const std::string& name, const std::string& value = "1") {
     text += "#define NEPHO_" + name + " " + value + "\n";
   };
-  define("VOLUMES", std::to_string(scene_.volumes.size()));
+  define("VOLUMES", std::to_string(std::max<std::size_t>(scene_.volumes.size(), 1)));
   // Loops over volumes and octaves are written out: see shaders/march.glsl.
   const int octaves = s.light == Light::kSingle ? 1 : s.octaves;
   std::string each_volume, each_octave;
@@ -98,7 +101,9 @@ std::string Renderer::defines(bool lit) const {
   if (!s.step_voxels) define("ADAPTIVE");
   if (sky_light()) define("SKY_LIGHT");
   if (scene_.absorbs) define("ABSORPTION");
+  if (scene_.has_ice) define("ICE");
   if (lit) define("LIT");
+  if (planet_) text += planet_->defines();
   define("SUN_STEP", std::to_string(s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0));
 #ifdef NEPHO_MUTANT_SHADER  // tests: one planted mistake, by name
   define(NEPHO_MUTANT_SHADER);
@@ -126,6 +131,13 @@ void Renderer::upload() {
     buffer->bind(binding++);
   glBindTextureUnit(0, atlas_.id());
   glBindTextureUnit(1, light_atlas_.id());
+  if (scene_.has_ice) {
+    ice_atlas_ = gl::upload_ice(forest_, atlas_size_);
+    glBindTextureUnit(2, ice_atlas_.id());
+    ice_ = gl::Buffer(std::span<const BrickRecord>(scene_.ice));
+    ice_.bind(8);
+  }
+  if (planet_) planet_->upload();
 }
 
 // `samples` invocations for each light tile.
@@ -164,6 +176,7 @@ void Renderer::view() {
   const gl::Program program = gl::compile("view", nepho_shader_view, defines(true));
   glUseProgram(program.id());
   glBindImageTexture(0, id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  if (planet_) planet_->bind_view();
   const GLint first = glGetUniformLocation(program.id(), "first_pixel");
   for (int y = 0; y < height; y += kPixelBlock)
     for (int x = 0; x < width; x += kPixelBlock) {
@@ -228,14 +241,19 @@ void Renderer::report() {
   if (scene_.lit.empty()) report.left_out.push_back("light passes: nothing scatters");
   if (forest_.budget_bound)
     report.left_out.push_back("finer nodes that this view asks for: the budget is full");
-  report.atlas_bytes = 2 * gl::texels(atlas_size_);
+  report.atlas_bytes = (scene_.has_ice ? 4 : 2) * gl::texels(atlas_size_);
   report.sun_bytes = (sky_light() ? 8 : 2) * gl::texels(light_size_);
   report.node_bytes = scene_.nodes.size() * sizeof(NodeRecord) +
-                      scene_.bricks.size() * sizeof(BrickRecord) +
+                      (scene_.bricks.size() + scene_.ice.size()) * sizeof(BrickRecord) +
                       scene_.lit.size() * sizeof(LitRecord);
-  report.staging_bytes = scene_.bricks.size() * sizeof(LeafBrick);
+  report.staging_bytes =
+      scene_.bricks.size() * sizeof(LeafBrick) + scene_.ice.size() * sizeof(IceCodes);
   report.image_bytes =
       16 * std::uint64_t(request_.settings.width) * std::uint64_t(request_.settings.height);
+  if (planet_)
+    planet_->add_to(report);
+  else
+    report.left_out.push_back("air and ground: the scene is on no planet");
   for (const VolumeTree& tree : forest_.volumes) {
     const VolumeInfo& info = tree.source->info();
     VolumeReport volume;
@@ -258,11 +276,15 @@ RenderResult Renderer::run() {
   timed("refine and read", [&] {
     forest_ = build_forest(request_.volumes, gl::refinement_of(request_));
     scene_ = gl::make_gpu_scene(request_, forest_);
+    if (request_.planet) planet_.emplace(request_, forest_);
     scene_.frame.least_transmittance = exact() ? kLeastTransmittanceExact : kLeastTransmittance;
   });
   timed("upload", [&] { upload(); });
   light();
+  if (planet_ && planet_->scene().sun_map)
+    timed("sun map", [&] { planet_->draw_sun_map(defines(false)); });
   timed("view", [&] { view(); });
+  if (planet_) timed("ground", [&] { planet_->draw_ground(picture_.id(), defines(false)); });
   timed("read back", [&] { read_back(); });
   check_overruns();
   if (request_.settings.probe_pixels > 0)

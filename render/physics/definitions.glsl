@@ -8,6 +8,7 @@
 #define InverseSolidAngle float
 #define Radiance float
 #define Irradiance float
+#define Emission float
 #define OUT(T) out T
 #define PRECISE precise
 

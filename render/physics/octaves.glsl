@@ -1,7 +1,8 @@
 // Octaves of multiple scattering, the interim light model (Wrenninge, Kulla, Lundqvist 2013). Order
 // n scatters a^n as much, sees b^n of the optical depth towards the sun, with an asymmetry g c^n.
 // Not physical: reflected radiance of slabs is off by a factor of 2.2 rms with these constants, the
-// best fit to 8 octaves (physics.md 2.2; measured again by octaves_test).
+// best fit of 8 octaves to radiances by adding-doubling (Hansen and Travis 1974; tests/data/truth).
+// octaves_test measures it again.
 const Number octave_a = Number(0.651);
 const Number octave_b = Number(0.400);
 const Number octave_c = Number(0.684);

@@ -5,6 +5,9 @@
 // include in the parts; literals are Number(0.5), results OUT(T). PRECISE forbids contraction.
 #include "angles.glsl"
 
+#include "air.glsl"
+#include "daylight.glsl"
+#include "ground.glsl"
 #include "octaves.glsl"
 #include "phase.glsl"
 #include "shell.glsl"

@@ -22,6 +22,7 @@
   using InverseSolidAngle = T;  \
   using Radiance = T;           \
   using Irradiance = T;         \
+  using Emission = T;           \
   using std::abs;               \
   using std::ceil;              \
   using std::exp;               \
@@ -56,6 +57,7 @@ using Radiance = Quantity<0, 1, 0>;
 using SolidAngle = Quantity<0, 0, 1>;
 using InverseSolidAngle = Quantity<0, 0, -1>;
 using Irradiance = Quantity<0, 1, 1>;
+using Emission = Quantity<-1, 1, 0>;
 const Number dekker_splitter = Number(134217729.0);
 #include "physics/physics.glsl"
 }  // namespace

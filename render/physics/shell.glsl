@@ -43,7 +43,8 @@ int simpson_steps(Length ray_length, Length radius, Length cell_height) {
 
 // Part of the sun's disc above the horizon of a sphere, seen from `height` over it: 0 .. 1. The disc
 // (angular radius 0.004675 rad) is crossed as a smoothstep: within 0.04 of the true area, monotone
-// (physics.md 3, rows 20 and 21). Without it a terminator has the width of a voxel.
+// (Bruneton 2017, Precomputed Atmospheric Scattering: GetTransmittanceToSun has one in the cosine;
+// this one is in the angle). Without it a terminator has the width of a voxel.
 Number sun_above_horizon(Length radius, Length height, Number sin_elevation) {
   Length up = max(height, Length(0.0));
   Number dip = arc_tangent(sqrt(up * (Number(2.0) * radius + up)) / radius, Number(1.0));

@@ -1,4 +1,7 @@
-// Optical depth and emission of one step (physics.md 2.1; Hillaire 2016 is the case s0 = s1).
+// Optical depth and emission of one step, its source linear in optical depth:
+//   L = T x (S0 e0(x) + (S1 - S0) w1(x)),  e0 = (1 - e^-x) / x,  w1 = (1 - (1 + x) e^-x) / x^2.
+// S0 = S1 is the step of Hillaire 2016 (Physically Based Sky, Atmosphere and Cloud Rendering in
+// Frostbite, SIGGRAPH course).
 
 // (1 - e^-x) / x for x >= 0: the mean transmittance of a step of optical depth x. The quotient
 // loses all digits for small x, so there the series; it reaches to 1 because exp() of a GPU may be

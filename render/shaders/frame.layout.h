@@ -46,6 +46,8 @@ struct VolumeData {
   int levels[32];        // split mask << 24 | log2 of a cell's size in finest cells: z << 16 | y << 8 | x
   float albedo[3];
   float asymmetry;
+  int ice_phase_row;  // of the part that is ice, where the volume tells it apart
+  float ice_asymmetry;
 };
 
 // 16 bytes. Inner: first_child. Leaf: lit = its light tile. See NODE_* for flags.

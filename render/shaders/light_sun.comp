@@ -15,6 +15,6 @@ void main() {
   ivec3 sample_index = ivec3(s % 9, s / 9 % 9, s / 81);
   ray_start = lit_world(tile, sample_index);
   ray_direction = vec_of(frame.to_sun);
-  float tau = optical_depth_ahead();
+  float tau = optical_depth_ahead(1e4);
   imageStore(light_image, lit_texel(tile, sample_index), vec4(tau, 0.0, 0.0, 0.0));
 }

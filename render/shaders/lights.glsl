@@ -4,6 +4,10 @@
 // Phase function towards the eye times a^n, per octave: the sun is distant, so once per ray.
 vec3 octave_phase[NEPHO_VOLUMES * NEPHO_OCTAVES];
 float octave_rate[NEPHO_OCTAVES];  // b^n, once per ray
+#ifdef NEPHO_ICE
+layout(binding = 2) uniform sampler3D ice_atlas;
+vec3 octave_ice[NEPHO_VOLUMES * NEPHO_OCTAVES];  // the same of ice
+#endif
 
 layout(std430, binding = 4) readonly buffer PhaseBuffer { float phase_log[]; };  // rows of 1024 x 3
 
@@ -18,6 +22,33 @@ vec3 table_phase(int row, float one_minus_cos) {
   }
   return value;
 }
+
+#ifdef NEPHO_ICE
+// Part of a volume's extinction that is ice.
+float ice_part(int volume, float t_m) {
+  if (walks[volume].kind != NODE_BRICK || walks[volume].ice_range_per_m + walks[volume].ice_offset_per_m <= 0.0) return 0.0;
+  vec3 at = walks[volume].tile + leaf_cells_at(volume, walks[volume], t_m);
+#ifdef NEPHO_TEXELS8
+  float code = texel8(ice_atlas, at);
+#else
+  float code = textureLod(ice_atlas, (at + 0.5) / vec3(textureSize(ice_atlas, 0)), 0.0).r;
+#endif
+  float ice = walks[volume].ice_offset_per_m + walks[volume].ice_range_per_m * code;
+  // Where extinction goes to 0, the brick's own part stands for the limit.
+  float most = walks[volume].range_per_m + walks[volume].offset_per_m, least = 1e-5 * most;
+  float whole = clamp((walks[volume].ice_range_per_m + walks[volume].ice_offset_per_m) / most, 0.0, 1.0);
+  return clamp((ice + least * whole) / (extinction_at(volume, t_m) + least), 0.0, 1.0);
+}
+
+void set_ice_octaves(int volume, float one_minus_cos) {
+  octave_ice[volume * NEPHO_OCTAVES] = table_phase(volumes[volume].ice_phase_row, one_minus_cos);
+#define NEPHO_DO_OCTAVE(n)                \
+  octave_ice[volume * NEPHO_OCTAVES + n] = \
+      vec3(octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].ice_asymmetry)));
+  NEPHO_EACH_OCTAVE
+#undef NEPHO_DO_OCTAVE
+}
+#endif
 
 // Octaves are written out too (NEPHO_EACH_OCTAVE, from 1): powers of literals fold.
 void set_octaves(int volume, float one_minus_cos) {
@@ -39,11 +70,54 @@ void begin_lights() {
   set_octaves(v, one_minus_cos);
   NEPHO_EACH_VOLUME
 #undef NEPHO_DO
+#ifdef NEPHO_ICE
+#define NEPHO_DO(v) set_ice_octaves(v, one_minus_cos);
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
+#endif
 }
 
-float sun_part;  // of the sun's disc that the planet leaves free; set by total_source_at
+#ifdef NEPHO_GROUND
+// What arrives at the last place asked for: across the sun's beam, and from the sky.
+vec3 sun_light, light_up, light_side, light_down;
+#if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
+// Sky light at both ends of a segment of cloud within a span; linear between them.
+float sky_begin_m, sky_end_m;
+vec3 sky_up[2], sky_side[2], sky_down[2];
 
-#ifdef NEPHO_SHELL
+void begin_sky_light(float begin_m, float end_m) {
+  sky_begin_m = begin_m;
+  sky_end_m = end_m;
+  for (int end = 0; end < 2; ++end) {
+    float height_m, mu, mu_sun;
+    planet_place(end == 0 ? begin_m : end_m, height_m, mu, mu_sun);
+    vec2 place = light_place(height_m, mu_sun);
+    sky_up[end] = air_light(place, LIGHT_UP);
+    sky_side[end] = air_light(place, LIGHT_SIDE);
+    sky_down[end] = air_light(place, LIGHT_DOWN);
+  }
+}
+#endif
+
+void light_at(float t_m) {
+#if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
+  vec3 w = span_weights(t_m);
+  sun_light = max(w.x * span.sun0 + w.y * span.sun1 + w.z * span.sun2, vec3(0.0));
+  float u = clamp((t_m - sky_begin_m) / max(sky_end_m - sky_begin_m, 1e-3), 0.0, 1.0);
+  light_up = mix(sky_up[0], sky_up[1], u);
+  light_side = mix(sky_side[0], sky_side[1], u);
+  light_down = mix(sky_down[0], sky_down[1], u);
+#else
+  float height_m, mu, mu_sun;
+  planet_place(t_m, height_m, mu, mu_sun);
+  sun_light = planet_sun_part(height_m, mu_sun) * vec_of(frame.sun_irradiance);
+#endif
+}
+#else
+float sun_part;  // of the sun's disc that the planet leaves free; set by total_source_at
+#endif
+
+#if defined(NEPHO_SHELL) && !defined(NEPHO_GROUND)
 float sun_part_at(float t_m) {
   dvec3 stretch = dvec3(1.0LF, 1.0LF, frame.ground_z_scale);
   dvec3 p = stretch * (ray_start + ray_direction * double(t_m)), s = stretch * vec_of(frame.to_sun);
@@ -57,13 +131,26 @@ float sun_part_at(float t_m) {
 vec3 source_at(int volume, float t_m) {
   vec3 at = walks[volume].light_tile + leaf_cells_at(volume, walks[volume], t_m);
   vec4 light = textureLod(light_atlas, (at + 0.5) / vec3(textureSize(light_atlas, 0)), 0.0);
-  vec3 scattered = octave_phase[volume * NEPHO_OCTAVES] * exp(-light.r);
-#define NEPHO_DO_OCTAVE(n) \
-  scattered += octave_phase[volume * NEPHO_OCTAVES + n] * exp(-(octave_rate[n] * light.r));
+#ifdef NEPHO_ICE
+  // k S = (k - k_ice) S_liquid + k_ice S_ice.
+  float ice = ice_part(volume, t_m);
+#define NEPHO_OCTAVE(n) mix(octave_phase[volume * NEPHO_OCTAVES + n], octave_ice[volume * NEPHO_OCTAVES + n], ice)
+#else
+#define NEPHO_OCTAVE(n) octave_phase[volume * NEPHO_OCTAVES + n]
+#endif
+  vec3 scattered = NEPHO_OCTAVE(0) * exp(-light.r);
+#define NEPHO_DO_OCTAVE(n) scattered += NEPHO_OCTAVE(n) * exp(-(octave_rate[n] * light.r));
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
+#ifdef NEPHO_GROUND
+  vec3 radiance = scattered * sun_light;
+#else
   vec3 radiance = sun_part * scattered * vec_of(frame.sun_irradiance);
-#ifdef NEPHO_SKY_LIGHT
+#endif
+#if defined(NEPHO_SKY_LIGHT) && defined(NEPHO_GROUND)
+  for (int c = 0; c < 3; ++c)
+    radiance[c] += sky_source(light.g, light.b, light.a, light_up[c], light_side[c], light_down[c]);
+#elif defined(NEPHO_SKY_LIGHT)
   for (int c = 0; c < 3; ++c)
     radiance[c] += sky_source(light.g, light.b, light.a, frame.zenith[c], frame.horizon[c], frame.below[c]);
 #endif
@@ -78,7 +165,9 @@ vec3 source_at(int volume, float t_m) {
 vec3 total_source_at(float t_m) {
   vec3 sum = vec3(0.0);
   float weight = 0.0;
-#ifdef NEPHO_SHELL
+#ifdef NEPHO_GROUND
+  light_at(t_m);
+#elif defined(NEPHO_SHELL)
   sun_part = sun_part_at(t_m);
 #else
   sun_part = 1.0;

@@ -120,6 +120,9 @@ float leaf_cell_length(int volume, float t_m) {
   return cell_m;
 }
 
+// The shortest step that a float of t_m can still take: a few of its spacings.
+float least_step(float t_m) { return 5e-7 * abs(t_m); }
+
 // One cell of the finest leaf around t_m, along the ray.
 float cell_length(float t_m) {
   float least = FAR;
@@ -134,9 +137,12 @@ float cell_length(float t_m) {
 float leaf_cell_end(int volume, float ahead) {
   float wall = FAR;
   if (walks[volume].kind == NODE_BRICK) {
-    ivec3 size = (walks[volume].high - walks[volume].low) >> 3;
-    ivec3 cell = clamp(ivec3(floor(leaf_cells_at(volume, walks[volume], ahead))), ivec3(0), ivec3(7));
-    ivec3 low = walks[volume].low + cell * size;
+    // Rounded down before the index is added: a sum in float could round a ray that leaves a wall
+    // at 1e-18 of its length back onto it, and that wall, always behind, is never left.
+    ivec3 at = walks[volume].index + ivec3(floor(cells_at(volume, walks[volume], ahead)));
+    ivec3 size = (walks[volume].high - walks[volume].low) >> 3;  // powers of two
+    at = clamp(at, walks[volume].low, walks[volume].high - 1) - walks[volume].low;
+    ivec3 low = walks[volume].low + (at & -size);
     int axis;
     bool up;
     next_wall(volume, walks[volume], low, low + size, ahead, wall, axis, up);
@@ -157,7 +163,7 @@ int leaf_sub_steps(int volume, float step_m) {
 // asks for: the reference setting.
 float cell_end(float t_m, float end_m, out int sub_steps) {
   // A hair beyond t_m: on a wall the cell behind would end at once.
-  float hair = 1e-3 * cell_length(t_m), least = end_m;
+  float hair = max(1e-3 * cell_length(t_m), least_step(t_m)), least = end_m;
 #define NEPHO_DO(v) least = min(least, leaf_cell_end(v, t_m + hair));
   NEPHO_EACH_VOLUME
 #undef NEPHO_DO
@@ -170,14 +176,15 @@ float cell_end(float t_m, float end_m, out int sub_steps) {
 }
 #endif
 
-// Optical depth from the start to the ground, or to where the ray leaves all charts.
+// Optical depth from the start to the ground, or to where the ray leaves all charts; done where it
+// is above `most`.
 const float OPAQUE = 65504.0;  // the largest half float
-float optical_depth_ahead() {
+float optical_depth_ahead(float most) {
   float end_m, t = begin_walks(end_m), tau = 0.0;
   if (t >= FAR) return 0.0;
   float leave = 0.0;
   int ended = t < end_m ? 0 : 1;
-  while (leave < FAR && t < end_m && tau <= 1e4) {
+  while (leave < FAR && t < end_m && tau <= most) {
     bool empty, smooth_;
     leave = settle_walks(t, empty, smooth_);
     float end = min(leave, end_m);
@@ -186,6 +193,9 @@ float optical_depth_ahead() {
       float k0 = total_extinction_at(t);
       if (smooth_) {
         tau += k0 * (end - t);
+#ifdef NEPHO_NOTE_DEPTH
+        note_depth(k0 * (end - t), 0.5 * (t + end));
+#endif
       } else {
         float h = NEPHO_SUN_STEP * cell_length(0.5 * (t + end));
         while (t < end) {
@@ -195,12 +205,15 @@ float optical_depth_ahead() {
 #else
           // Equal steps to the end of the segment: no short last one.
           const int sub_steps = 1;
-          float next = end - t < 1.5 * h ? end : t + h;
+          float next = end - t < 1.5 * h ? end : t + max(h, least_step(t));
 #endif
           float sub = (next - t) / float(sub_steps);
           for (int s = 0; s < sub_steps; ++s) {
             float k_mid = total_extinction_at(t + 0.5 * sub), k1 = total_extinction_at(t + sub);
             tau += simpson_optical_depth(k0, k_mid, k1, sub);
+#ifdef NEPHO_NOTE_DEPTH
+            note_depth(simpson_optical_depth(k0, k_mid, k1, sub), t + 0.5 * sub);
+#endif
             k0 = k1;
             t += sub;
           }
@@ -209,7 +222,7 @@ float optical_depth_ahead() {
       }
     }
     t = end;
-    if (leave >= FAR || t >= end_m || tau > 1e4) ended = 1;
+    if (leave >= FAR || t >= end_m || tau > most) ended = 1;
   }
   count_overrun(ended);
   // A level ray in a periodic layer never leaves it.

@@ -29,6 +29,9 @@ struct Walk {
   vec3 per_cell;     // its own cells per finest cell
   vec3 tile;         // atlas texel of its first sample
   vec3 light_tile;
+#ifdef NEPHO_ICE
+  float ice_range_per_m, ice_offset_per_m;
+#endif
   // Where it is left.
   float leave_m;
   int leave_axis;    // 0 x, 1 y, 2 z; -1: the start of the chart
@@ -83,6 +86,10 @@ void descend(int volume, inout Walk w, ivec3 cell) {
     w.range_per_m = brick.range_per_m;
     w.offset_per_m = brick.offset_per_m;
     w.tile = tile_origin(node.brick_or_constant, textureSize(atlas, 0));
+#ifdef NEPHO_ICE
+    w.ice_range_per_m = ice_bricks[node.brick_or_constant].range_per_m;
+    w.ice_offset_per_m = ice_bricks[node.brick_or_constant].offset_per_m;
+#endif
   } else {
     w.constant_per_m = w.kind == NODE_CONSTANT ? uintBitsToFloat(node.brick_or_constant) : 0.0;
   }
@@ -91,6 +98,9 @@ void descend(int volume, inout Walk w, ivec3 cell) {
 #endif
 }
 
+#if defined(NEPHO_SHELL) || defined(NEPHO_GROUND)
+#include "fp64.glsl"
+#endif
 #include "walk_box.glsl"
 #ifdef NEPHO_SHELL
 #include "walk_shell.glsl"

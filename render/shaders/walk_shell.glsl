@@ -9,32 +9,6 @@ const float FACE_V_SIGN[6] = float[](1.0, 1.0, 1.0, 1.0, 1.0, -1.0);
 
 float face_sign(int face) { return (face & 1) == 0 ? 1.0 : -1.0; }
 
-// Taylor at a quarter of the angle (|angle| <= pi, rest < 5e-17), doubled twice: GLSL has no fp64
-// trigonometry.
-void sin_cos_fp64(double angle, out double s, out double c) {
-  double x = 0.25LF * angle, z = x * x;
-  s = x * (1.0LF + z * (-1.0LF / 6.0LF + z * (1.0LF / 120.0LF + z * (-1.0LF / 5040.0LF +
-      z * (1.0LF / 362880.0LF + z * (-1.0LF / 39916800.0LF + z * (1.0LF / 6227020800.0LF +
-      z * (-1.0LF / 1307674368000.0LF))))))));
-  c = 1.0LF + z * (-0.5LF + z * (1.0LF / 24.0LF + z * (-1.0LF / 720.0LF + z * (1.0LF / 40320.0LF +
-      z * (-1.0LF / 3628800.0LF + z * (1.0LF / 479001600.0LF +
-      z * (-1.0LF / 87178291200.0LF + z * (1.0LF / 20922789888000.0LF))))))));
-  for (int doubling = 0; doubling < 2; ++doubling) {
-    double twice = 2.0LF * s * c;
-    c = 1.0LF - 2.0LF * s * s;
-    s = twice;
-  }
-}
-
-// The float result, turned back in fp64: what is left is too small for a third order.
-double atan_fp64(double y, double x) {
-  double guess = double(atan(float(y / max(abs(x), abs(y))), float(x / max(abs(x), abs(y)))));
-  double s, c;
-  sin_cos_fp64(guess, s, c);
-  double rest = (y * c - x * s) / (x * c + y * s);
-  return guess + rest * (1.0LF - rest * rest / 3.0LF);
-}
-
 dvec3 to_scaled(int volume, dvec3 p) { return dvec3(p.x, p.y, p.z * volumes[volume].z_scale); }
 
 // Unit direction in scaled space, and the scaled metres in a metre.
@@ -80,15 +54,6 @@ void shell_set_face(int volume, inout Walk w, int face) {
   w.root = face;
   face_axis(volume, w, 0, normal, su * p[FACE_U[face]], d_normal, su * d[FACE_U[face]]);
   face_axis(volume, w, 1, normal, sv * p[FACE_V[face]], d_normal, sv * d[FACE_V[face]]);
-}
-
-// Distance to a sphere about the centre, fp64; negative where it is missed or behind.
-double sphere_entry(double r0, double mu, double radius, bool far) {
-  double b = r0 * mu, c = (r0 - radius) * (r0 + radius), discriminant = b * b - c;
-  if (discriminant < 0.0LF) return -1.0LF;
-  double q = -(b + (b < 0.0LF ? -1.0LF : 1.0LF) * sqrt(discriminant));
-  double other = q == 0.0LF ? 0.0LF : c / q;
-  return far ? max(q, other) : min(q, other);
 }
 
 Walk shell_begin(int volume) {

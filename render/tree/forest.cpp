@@ -37,13 +37,16 @@ struct Candidate {
   }
 };
 
-TreeNode leaf_from(NodeKey key, const NodeSummary& summary) {
+// `whole`: what is constant needs no brick. Not where ice is told apart: its part of a constant is
+// only in bricks.
+TreeNode leaf_from(NodeKey key, const NodeSummary& summary, bool whole) {
   TreeNode node;
   node.key = key;
   node.kind = NodeKind::kBrick;
   if (summary.constant) {
     node.constant_per_m = summary.constant_extinction_per_m;
-    node.kind = node.constant_per_m > 0 ? NodeKind::kConstant : NodeKind::kEmpty;
+    node.kind = node.constant_per_m > 0 ? (whole ? NodeKind::kConstant : NodeKind::kBrick)
+                                        : NodeKind::kEmpty;
   } else if (summary.empty) {
     node.kind = NodeKind::kEmpty;
   }
@@ -53,6 +56,11 @@ TreeNode leaf_from(NodeKey key, const NodeSummary& summary) {
   if (summary.error_bound_per_m == 0) node.error_bound_per_m = 0;
   node.unresolved_variance_per_m2 = float(summary.unresolved_variance_per_m2);
   return node;
+}
+
+// What no ray meets only casts shadows: it needs no light of its own.
+bool has_light(const TreeNode& node) {
+  return node.seen && (node.kind == NodeKind::kBrick || node.kind == NodeKind::kConstant);
 }
 
 class Refiner {
@@ -82,10 +90,17 @@ class Refiner {
     return refinement_.cost.bytes(counts.nodes, counts.bricks, counts.lit);
   }
 
-  static void count(Counts& counts, NodeKind kind, int sign) {
+  static void count(Counts& counts, const TreeNode& node, int sign) {
     const auto add = std::uint64_t(std::int64_t(sign));
-    if (kind == NodeKind::kBrick) counts.bricks += add;
-    if (kind == NodeKind::kBrick || kind == NodeKind::kConstant) counts.lit += add;
+    if (node.kind == NodeKind::kBrick) counts.bricks += add;
+    if (has_light(node)) counts.lit += add;
+  }
+
+  TreeNode leaf(std::uint32_t volume, NodeKey key, const NodeSummary& summary) const {
+    const VolumeInfo& info = forest_.volumes[volume].source->info();
+    TreeNode node = leaf_from(key, summary, !has_ice(info));
+    node.seen = node.kind == NodeKind::kEmpty || metric_.seen(info, key);
+    return node;
   }
 
   NodeSummary summarise(std::uint32_t volume, NodeKey key) const {
@@ -116,12 +131,12 @@ class Refiner {
   // Adds a leaf to its tree, and to the queue where a split of it is worth something.
   void append(std::uint32_t volume, NodeKey key, const NodeSummary& summary) {
     VolumeTree& tree = forest_.volumes[volume];
-    const TreeNode node = leaf_from(key, summary);
+    const TreeNode node = leaf(volume, key, summary);
     const auto index = std::uint32_t(tree.nodes.size());
     tree.nodes.push_back(node);
     tree.finest_level_used = std::max(tree.finest_level_used, key.level());
     ++counts_.nodes;
-    count(counts_, node.kind, +1);
+    count(counts_, node, +1);
 
     const VolumeInfo& info = tree.source->info();
     const bool nothing_below = summary.empty && summary.children == 0;
@@ -166,16 +181,16 @@ class Refiner {
     const std::vector<NodeKey> keys = lattice(first.volume).children(first.key);
     Counts after = counts_;
     after.nodes += keys.size();
-    count(after, forest_.volumes[first.volume].nodes[first.node].kind, -1);
+    count(after, forest_.volumes[first.volume].nodes[first.node], -1);
     for (std::size_t c = 0; c < keys.size(); ++c)
-      count(after, leaf_from(keys[c], summaries[c]).kind, +1);
+      count(after, leaf(first.volume, keys[c], summaries[c]), +1);
 #if !defined(NEPHO_MUTANT_FOREST_BUDGET)
     if (double(cost(after)) > budget_bytes_) return false;
 #endif
 
     queue_.erase(queue_.begin());
     std::vector<TreeNode>& nodes = forest_.volumes[first.volume].nodes;
-    count(counts_, nodes[first.node].kind, -1);
+    count(counts_, nodes[first.node], -1);
     nodes[first.node].kind = NodeKind::kInner;
     nodes[first.node].first_child = std::uint32_t(nodes.size());
     for (std::size_t c = 0; c < keys.size(); ++c) append(first.volume, keys[c], summaries[c]);
@@ -195,7 +210,7 @@ class Refiner {
     for (const std::uint32_t n : order) {
       TreeNode& node = tree.nodes[n];
       if (node.kind != NodeKind::kBrick && node.kind != NodeKind::kConstant) continue;
-      node.lit = tree.lit_nodes++;
+      if (has_light(node)) node.lit = tree.lit_nodes++;
       if (node.kind != NodeKind::kBrick) continue;
       node.brick = std::uint32_t(tree.bricks.size());
       tree.bricks.emplace_back().key = node.key;

@@ -22,7 +22,8 @@ struct TreeNode {
   std::uint32_t first_child = 0;  // kInner: index of the first of its contiguous children, which
                                   // are all present, in octant order (ascending octant bits)
   std::uint32_t brick = 0;        // kBrick: index into bricks
-  std::uint32_t lit = 0;          // kConstant, kBrick: index of its sun tile, in key order
+  std::uint32_t lit = 0;          // kConstant, kBrick that is seen: its light tile, in key order
+  bool seen = true;               // a ray through the picture can meet it (ViewMetric::seen)
   float constant_per_m = 0;       // kConstant
   float majorant_per_m = 0;       // bound of this node and below
   float error_bound_per_m = 0;

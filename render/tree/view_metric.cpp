@@ -26,13 +26,7 @@ QBox q_box(const Lattice& lattice, NodeKey key) {
   return {at / count, (at + 1.0) / count};
 }
 
-struct Shape {
-  std::array<glm::dvec3, 27> grid_m;
-  glm::dvec3 edge_m{0.0};  // longest row of grid points along each axis
-  glm::dvec3 center_m;
-  double radius_m = 0;
-};
-
+template <class Shape>
 Shape shape_of(const Chart& chart, int root, const QBox& box) {
   Shape shape;
   for (int p = 0; p < 27; ++p) {
@@ -65,7 +59,32 @@ glm::dvec3 nearest_image(const BoxChart& chart, const QBox& box, glm::dvec3 eye_
   return eye_m;
 }
 
+// Hidden by a sphere: beyond the plane of its horizon and within its shadow's cone.
+bool behind_planet(const ShellChart& chart, const glm::dvec3& eye_m, const glm::dvec3& center_m,
+                   double radius_m) {
+  const glm::dvec3 eye = chart.to_scaled(eye_m), center = chart.to_scaled(center_m);
+  const double stretch = chart.body().equatorial_m / chart.body().polar_m;
+  const double radius = std::max(stretch, 1.0) * radius_m;
+  // The ground that hides: the lowest that any cloud's ray can reach.
+  const double body = chart.body().equatorial_m + std::min(0.0, chart.bottom_m());
+  const double away = glm::length(eye);
+  if (!(away > body)) return false;
+  const glm::dvec3 inwards = -eye / away, offset = center - eye;
+  const double depth = glm::dot(offset, inwards);
+  if (depth - radius < (away - body) * (away + body) / away) return false;
+  const double tangent = body / std::sqrt((away - body) * (away + body));
+  const double across = glm::length(offset - depth * inwards);
+  return across + radius * std::sqrt(1 + tangent * tangent) < depth * tangent;
+}
+
 }  // namespace
+
+struct ViewMetric::Shape {
+  std::array<glm::dvec3, 27> grid_m;
+  glm::dvec3 edge_m{0.0};  // longest row of grid points along each axis
+  glm::dvec3 center_m;
+  double radius_m = 0;
+};
 
 ViewMetric::ViewMetric(const Camera& camera, const RenderSettings& settings)
     : eye_m_(camera.eye_m),
@@ -87,18 +106,33 @@ bool ViewMetric::on_screen(const glm::dvec3& center_m, double radius_m) const {
          inside(glm::dot(offset, up_), tan_half_height_);
 }
 
+bool ViewMetric::seen(const VolumeInfo& info, const Shape& shape) const {
+  if (const auto* chart = dynamic_cast<const BoxChart*>(info.chart.get())) {
+    if (chart->periodic().x || chart->periodic().y) return true;
+  } else if (behind_planet(static_cast<const ShellChart&>(*info.chart), eye_m_, shape.center_m,
+                           shape.radius_m)) {
+    return false;
+  }
+  return on_screen(shape.center_m, shape.radius_m);
+}
+
+bool ViewMetric::seen(const VolumeInfo& info, NodeKey key) const {
+  return seen(info, shape_of<Shape>(*info.chart, key.root(), q_box(info.lattice, key)));
+}
+
 ViewMetric::NodeView ViewMetric::view(const VolumeInfo& info, NodeKey key) const {
   const QBox box = q_box(info.lattice, key);
-  const Shape shape = shape_of(*info.chart, key.root(), box);
+  const auto shape = shape_of<Shape>(*info.chart, key.root(), box);
   glm::dvec3 eye_m = eye_m_;
-  bool repeats = false;
   glm::dvec3 q;
   if (const auto* chart = dynamic_cast<const BoxChart*>(info.chart.get())) {
-    repeats = chart->periodic().x || chart->periodic().y;
     eye_m = nearest_image(*chart, box, eye_m_);
     q = chart->inverse_edges() * (eye_m - chart->origin_m());
   } else {
     q = static_cast<const ShellChart&>(*info.chart).coordinates(key.root(), eye_m);
+    // An eye on the axis of a neighbouring face has no angle on this one: any is as near.
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::isnan(q[axis])) q[axis] = 0.5;
   }
   const glm::dvec3 clamped = glm::clamp(q, box.low, box.high);
   double distance_m = glm::length(info.chart->ecef_m({key.root(), clamped}) - eye_m);
@@ -111,9 +145,8 @@ ViewMetric::NodeView ViewMetric::view(const VolumeInfo& info, NodeKey key) const
       voxel_m = std::max(voxel_m, shape.edge_m[axis] / kBrickCells);
   // An eye in the node looks at voxels from half a voxel away.
   const double pixels = voxel_m / (std::max(distance_m, voxel_m / 2) * pixel_rad_);
-  const bool seen = repeats || on_screen(shape.center_m, shape.radius_m);
   const double length_m = std::max({shape.edge_m.x, shape.edge_m.y, shape.edge_m.z});
-  return {seen ? pixels : kOffScreen * pixels, length_m};
+  return {seen(info, shape) ? pixels : kOffScreen * pixels, length_m};
 }
 
 }  // namespace nepho

@@ -19,9 +19,14 @@ class ViewMetric {
   };
   // Of a node that has a finer level.
   NodeView view(const VolumeInfo& info, NodeKey key) const;
+  // Whether a ray through the picture can meet the node: false outside the picture and, on a shell,
+  // behind the planet. Errs towards true.
+  bool seen(const VolumeInfo& info, NodeKey key) const;
 
  private:
+  struct Shape;
   bool on_screen(const glm::dvec3& center_m, double radius_m) const;
+  bool seen(const VolumeInfo& info, const Shape& shape) const;
 
   glm::dvec3 eye_m_, forward_, right_, up_;
   double tan_half_height_, tan_half_width_, pixel_rad_;

@@ -194,5 +194,50 @@ TEST(Tone, exposure_puts_the_cloud_and_not_the_sky_at_its_level) {
   EXPECT_EQ(exposure_from(FloatImage(4, 4, 3), {}), 0);
 }
 
+// On a planet: what is in the dark, grey or clear.
+FloatImage grey(int width, int height, float value) {
+  FloatImage image(width, height, 3);
+  std::fill(image.values.begin(), image.values.end(), value);
+  return image;
+}
+void fill(FloatImage& image, std::size_t from, std::size_t to, float value) {
+  std::fill(image.values.begin() + std::ptrdiff_t(3 * from),
+            image.values.begin() + std::ptrdiff_t(3 * to), value);
+}
+
+TEST(Tone, the_night_side_does_not_set_a_planets_exposure) {
+  FloatImage image = grey(100, 100, 1e-4f);  // a globe, most of its clouds in the dark
+  fill(image, 0, 200, 0.3f);
+  const std::vector<float> cloud(10000, 5.0f);
+  EXPECT_NEAR(std::exp2(exposure_on_planet(image, cloud, 0.4)) * 0.3, kBrightCloud, 0.01);
+  // Twice the light, one stop less.
+  for (float& v : image.values) v *= 2;
+  EXPECT_NEAR(std::exp2(exposure_on_planet(image, cloud, 0.8)) * 0.6, kBrightCloud, 0.01);
+}
+
+TEST(Tone, a_grey_sky_stays_grey_and_a_clear_one_is_measured_by_white) {
+  const std::vector<float> overcast(10000, 30.0f), clear(10000, 0.0f);
+  const double ev = exposure_on_planet(grey(100, 100, 0.05f), overcast, 0.4);
+  EXPECT_NEAR(std::exp2(ev) * 0.4 * kGreyCloud, kBrightCloud, 0.01);
+  EXPECT_LT(std::exp2(ev) * 0.05, 0.4 * kBrightCloud);
+  const double blue = std::exp2(exposure_on_planet(grey(100, 100, 0.05f), clear, 0.4)) * 0.05;
+  EXPECT_NEAR(blue, 0.05 / 0.4 / 0.8, 0.01);
+  // A low sun: the picture is brighter than a surface in what is left of it. And night.
+  EXPECT_GT(std::exp2(exposure_on_planet(grey(100, 100, 0.05f), clear, 1e-3)) * 0.05, 0.9);
+  EXPECT_GT(std::exp2(exposure_on_planet(grey(100, 100, 1e-6f), clear, 0)) * 1e-6, 0.9);
+  EXPECT_EQ(exposure_on_planet(grey(4, 4, 0), {}, 0), 0);
+}
+
+TEST(Tone, white_is_shown_grey) {
+  FloatImage image(1, 1, 3);
+  image.values = {0.3f, 0.36f, 0.4f};
+  const glm::dvec3 white(1.5, 1.8, 2.0);
+  const ByteImage shown = to_display(image, 0, ToneMap::kNone, false, white);
+  EXPECT_NEAR(shown.values[0], shown.values[1], 1);
+  EXPECT_NEAR(shown.values[1], shown.values[2], 1);
+  EXPECT_EQ(to_display(image, 0, ToneMap::kNone).values,
+            to_display(image, 0, ToneMap::kNone, false, glm::dvec3(3)).values);
+}
+
 }  // namespace
 }  // namespace nepho

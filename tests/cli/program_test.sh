@@ -25,7 +25,8 @@ version_and_help() {
   nephoscope --help >h.txt && has h.txt 'Examples:' && has h.txt 'nephoscope render'
   nephoscope render --help >r.txt
   for option in size look-from look-at fov sun budget-mib step tolerance fetch seed frame fps \
-    density-scale up metres-per-unit grid light exposure explain; do
+    density-scale up metres-per-unit grid light exposure explain at heading pitch view time \
+    no-planet force; do
     has r.txt "^ *(-o,)?--$option"
   done
 }
@@ -119,6 +120,37 @@ options_beat_the_scene() {
     has i.txt "$pattern"
   done
   if grep -q tolerance i.txt; then fail "a fixed step leaves no tolerance"; fi
+}
+
+planets_views_repeat() {  # a cloud on the shell, with a planet because the scene says so
+  cat >in/s.json <<END
+{"volumes": [{"source": "analytic", "name": "patch",
+  "place": {"lat_deg": 47, "lon_deg": 11, "height_m": 3000},
+  "parameters": {"kind": "gaussian", "chart": "shell", "sigma": "300 km", "sigma_z": "1500 m",
+    "extinction_per_m": 0.002, "max_level": 5, "top": "12 km"}}],
+ "planet": {}, "image": {"width": 48, "height": 27}, "render": {"probe_pixels": 0}}
+END
+  nephoscope render in/s.json -o in/a.ppm >a.txt
+  has a.txt '^assumed: view: oblique, over the cloudiest part, --look-from geo:[0-9.]*,[0-9.]*,[0-9.]+ '
+  has a.txt '^assumed: sun: 35 degrees high to the side, --sun [0-9.]+,[0-9.]+ \(the data have no date\)$'
+  nephoscope render in/a.ppm -o in/b.ppm >/dev/null
+  nephoscope compare in/a.ppm in/b.ppm >same.txt && has same.txt 'bit for bit'
+  nephoscope render in/s.json --view globe --sun 2005-06-21T11:00Z -o in/c.ppm >c.txt
+  has c.txt '^assumed: view: the globe'
+  nephoscope render in/c.ppm -o in/d.ppm >/dev/null
+  nephoscope compare in/c.ppm in/d.ppm >same.txt && has same.txt 'bit for bit'
+  nephoscope render in/s.json --at 46,11 --sun 180,30 -o in/e.ppm >e.txt
+  has e.txt '^assumed: view: from the ground, --at 46.000000,11.000000,2 --heading '
+  # What was stated draws the same view, as far as its digits go.
+  options=$(sed -n 's/^assumed: view: from the ground, //p' e.txt)
+  nephoscope render in/s.json $options --sun 180,30 -o in/f.ppm >/dev/null
+  nephoscope compare in/e.ppm in/f.ppm >same.txt
+  rms=$(sed -n 's/^rms.*: \([0-9.e-]*\) %.*/\1/p' same.txt)
+  awk -v rms="$rms" 'BEGIN { exit !(rms < 3) }' || { cat same.txt; fail "another view"; }
+  # A stand or a view gives way to an eye, and the other way round.
+  nephoscope render in/e.ppm --look-from geo:46,11,9000 -o in/g.ppm >/dev/null
+  nephoscope render in/g.ppm --at 46,11 --heading 90 --pitch 5 -o in/h.ppm >h.txt
+  if grep -q '^assumed: view' h.txt; then fail "a given view is not worked out"; fi
 }
 
 ctrl_c_leaves_nothing() {

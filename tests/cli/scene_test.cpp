@@ -198,6 +198,108 @@ TEST(SceneFile, what_is_written_reads_back_to_the_same_bits) {
   EXPECT_TRUE(back.dither);
 }
 
+// The same for what a scene has on a planet.
+TEST(SceneFile, a_planet_reads_back_to_the_same_bits) {
+  Scene scene = parse(R"({"volumes": [{"source": "netcdf", "files": ["a.nc"],
+      "utc": "2005-08-28T15:00:00Z"}], "camera": {"stand": {"lat_deg": 24.1, "lon_deg": -86.7,
+      "azimuth_deg": 33.3, "elevation_deg": 7.7, "eye_height_m": 1.7}},
+      "sun": {"utc": "2005-08-28T15:00:00.5Z"}, "planet": {"equatorial_m": 3396190.1,
+      "polar_m": 3376200.3, "air": {"rayleigh_per_m": [1.1e-7, 2.2e-7, 3.3e-7],
+      "rayleigh_scale_m": 11100.1, "aerosol_extinction_per_m": [1e-5, 2e-5, 3e-5],
+      "aerosol_albedo": 0.77, "aerosol_asymmetry": 0.66, "aerosol_scale_m": 1234.5,
+      "ozone_per_m": [0, 1e-7, 0], "ozone_low_m": 1e4, "ozone_peak_m": 2e4, "ozone_high_m": 3e4,
+      "top_m": 88888.8}, "ground": {"land_albedo": [0.3, 0.2, 0.1],
+      "water_albedo": [0.01, 0.02, 0.03], "wind_m_per_s": 3.3}}})");
+  const std::string once = write_scene(scene, "/data");
+  const Scene back = parse(once);
+  EXPECT_EQ(write_scene(back, "/data"), once);
+  EXPECT_EQ(back.volumes[0].utc_ns, 1125241200000000000);
+  EXPECT_EQ(back.sun.utc_ns, 1125241200500000000);
+  EXPECT_EQ(back.camera.stand->azimuth_deg, 33.3);
+  EXPECT_EQ(back.camera.stand->elevation_deg, 7.7);
+  EXPECT_EQ(back.camera.stand->eye_height_m, 1.7);
+  ASSERT_TRUE(back.planet && back.planet->air);
+  EXPECT_EQ(back.planet->body.equatorial_m, 3396190.1);
+  EXPECT_EQ(back.planet->body.polar_m, 3376200.3);
+  EXPECT_EQ(back.planet->air->rayleigh_per_m, glm::dvec3(1.1e-7, 2.2e-7, 3.3e-7));
+  EXPECT_EQ(back.planet->air->aerosol_scale_m, 1234.5);
+  EXPECT_EQ(back.planet->air->top_m, 88888.8);
+  EXPECT_EQ(back.planet->ground.land_albedo, glm::dvec3(0.3, 0.2, 0.1));
+  EXPECT_EQ(back.planet->ground.wind_m_per_s, 3.3);
+
+  scene.planet->air.reset();
+  EXPECT_FALSE(parse(write_scene(scene, "/data")).planet->air);
+  scene.planet.reset();
+  EXPECT_FALSE(parse(write_scene(scene, "/data")).planet);
+  EXPECT_FALSE(parse(write_scene(scene, "/data")).no_planet);
+  scene.no_planet = true;
+  EXPECT_TRUE(parse(write_scene(scene, "/data")).no_planet);
+  scene.camera = {};
+  for (const View view : {View::kAuto, View::kOblique, View::kGlobe, View::kGround}) {
+    scene.camera.view = view;
+    EXPECT_EQ(parse(write_scene(scene, "/data")).camera.view, view);
+  }
+}
+
+TEST(SceneFile, a_planet_has_a_size_and_the_earths_air_by_default) {
+  const auto planet = [&](const std::string& members) {
+    return *parse("{\"volumes\": [" + kVolume + "], \"planet\": {" + members + "}}").planet;
+  };
+  EXPECT_EQ(planet("").body.polar_m, Ellipsoid::wgs84().polar_m);
+  EXPECT_EQ(planet("\"radius_m\": 1e9").body.polar_m, 1e9);
+  EXPECT_EQ(planet("\"radius_m\": 1e9").air->top_m, Air{}.top_m);
+  EXPECT_EQ(planet("\"air\": {\"top_m\": 5e4}").air->top_m, 5e4);
+  EXPECT_EQ(planet("\"air\": {\"top_m\": 5e4}").air->rayleigh_scale_m, Air{}.rayleigh_scale_m);
+  EXPECT_FALSE(planet("\"air\": \"none\"").air);
+}
+
+TEST(SceneFile, planets_suns_and_stands_that_cannot_be_are_named) {
+  const std::string head = "{\n \"volumes\": [" + kVolume + "],\n ";
+  const auto with = [&](const std::string& rest) { return message_of(head + rest + "}"); };
+  expect_in(
+      "s.json:3:12 (planet): wrong type: found the text 'mars', expected an object, or \"none\"",
+      with("\"planet\": \"mars\""));
+  expect_in("s.json:3:20 (planet.air): wrong type", with("\"planet\": {\"air\": \"thin\"}"));
+  expect_in("did you mean 'radius_m'", with("\"planet\": {\"radius\": 1e6}"));
+  expect_in("exclude each other",
+            with("\"planet\": {\"radius_m\": 1e6, \"equatorial_m\": 1e6, \"polar_m\": 1e6}"));
+  expect_in("expected 'polar_m'", with("\"planet\": {\"equatorial_m\": 1e6}"));
+  expect_in("not a planet's shape", with("\"planet\": {\"equatorial_m\": 1e6, \"polar_m\": 5e5}"));
+  expect_in("planet.air.rayleigh_per_m[2]): out of range",
+            with("\"planet\": {\"air\": {\"rayleigh_per_m\": [0, 0, -1]}}"));
+  expect_in("not a tent", with("\"planet\": {\"air\": {\"ozone_low_m\": 3e4}}"));
+  const std::string sky = R"("sky": {"zenith_W_per_m2_sr_nm": [0, 0, 0],
+      "horizon_W_per_m2_sr_nm": [0, 0, 0], "below_W_per_m2_sr_nm": [0, 0, 0]})";
+  expect_in("exclude each other", with(sky + ", \"planet\": {}"));
+  EXPECT_EQ(with(sky + ", \"planet\": \"none\""), "no error");
+  expect_in("s.json:3:17 (sun.utc): not a date: found '2005-02-30'",
+            with("\"sun\": {\"utc\": \"2005-02-30\"}"));
+  expect_in("exclude each other", with("\"sun\": {\"utc\": \"2005-02-03\", \"azimuth_deg\": 1, "
+                                       "\"elevation_deg\": 2}"));
+  expect_in("expected 'lon_deg'", with("\"camera\": {\"stand\": {\"lat_deg\": 1}}"));
+  expect_in("exclude each other", with("\"camera\": {\"stand\": {\"lat_deg\": 1, \"lon_deg\": 2},"
+                                       "\"look_from_m\": [1, 2, 3]}"));
+  expect_in("exclude each other",
+            with("\"camera\": {\"view\": \"globe\", \"look_at_m\": [1, 2, 3]}"));
+  expect_in("one of auto, oblique", with("\"camera\": {\"view\": \"side\"}"));
+  expect_in("exclude each other",
+            message_of(R"({"volumes": [{"source": "a", "time_s": 1, "utc": "2005-01-01"}]})"));
+}
+
+// Angles of the sun belong to the scene's place; a scene that is nowhere keeps them for later.
+TEST(SceneFile, a_suns_angles_wait_for_a_place) {
+  const std::string sun = R"("sun": {"azimuth_deg": 90, "elevation_deg": 0})";
+  const Scene nowhere = parse("{\"volumes\": [" + kVolume + "], " + sun + "}");
+  EXPECT_FALSE(nowhere.sun.to_sun);
+  EXPECT_EQ(nowhere.sun.azimuth_elevation_deg, glm::dvec2(90, 0));
+  EXPECT_EQ(parse(write_scene(nowhere, "/data")).sun.azimuth_elevation_deg, glm::dvec2(90, 0));
+  const Scene stands =
+      parse("{\"volumes\": [" + kVolume +
+            "], \"camera\": {\"stand\": {\"lat_deg\": 0, \"lon_deg\": 90}}, " + sun + "}");
+  ASSERT_TRUE(stands.sun.to_sun);
+  EXPECT_NEAR(glm::length(*stands.sun.to_sun - glm::dvec3(-1, 0, 0)), 0, 1e-15);
+}
+
 TEST(SceneFile, names_below_the_folder_become_relative_and_far_ones_absolute) {
   Scene scene = parse("{\"volumes\": [" + kVolume + "]}");
   scene.volumes[0].files = {"/a/b/c/x.vdb", "/a/y.vdb", "/far/away/z.vdb"};
@@ -255,10 +357,15 @@ void compare_with_schema(const ObjectGrammar& grammar, const nlohmann::json& sch
       case FieldKind::kParameters:
         EXPECT_EQ(property["type"], "object") << path;
         break;
+      case FieldKind::kObjectOrNone:
+        EXPECT_EQ(property["oneOf"][1]["const"], "none") << path;
+        [[fallthrough]];
       case FieldKind::kObject:
       case FieldKind::kObjectList: {
         const std::string name(field.object->name);
-        const auto& ref = field.kind == FieldKind::kObject ? property : property["items"];
+        const auto& ref = field.kind == FieldKind::kObject         ? property
+                          : field.kind == FieldKind::kObjectOrNone ? property["oneOf"][0]
+                                                                   : property["items"];
         EXPECT_EQ(ref["$ref"], "#/$defs/" + name) << path;
         compare_with_schema(*field.object, all["$defs"][name], all, seen);
       }

@@ -23,6 +23,7 @@ check 'ingest/sources/openvdb|tests/openvdb' 'find_package\(OpenVDB' 'openvdb/'
 check 'ingest/sources/netcdf|tests/netcdf' 'find_package\(netCDF' '(netcdf|hdf5)\.h'
 check 'tools/image/oiio' 'find_(package|path)\(.*OpenImageIO' 'OpenImageIO/'
 check 'ingest/geo|tests' 'find_package\(GeographicLib' 'GeographicLib/'
+check 'tools/sun' 'find_path\(LIBNOVA' 'libnova/'
 check 'tools' 'find_package\(CLI11' 'CLI/'
 check 'tools|tests' 'find_package\(nlohmann_json' 'nlohmann/'
 exit $failed

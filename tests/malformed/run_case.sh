@@ -1,8 +1,8 @@
 #!/bin/sh
 # run_case.sh TABLE NAME BIN_DIR WORK_DIR: runs one row of the table and checks all of it:
-#   exit code; exactly one error message (none where the code is 0), which matches; no picture and
-#   no temporary left (a picture where the code is 0); no signal; 5 s of CPU, 60 s of patience for a
-#   machine that is busy with other things. Prints what it saw.
+#   exit code; exactly one error message, which matches (none where the code is 0); nothing beside it
+#   on standard error; no picture and no temporary left (a picture where the code is 0); no signal;
+#   5 s of CPU, 60 s of patience for a machine that is busy with other things. Prints what it saw.
 set -u
 table=$1 name=$2 bin=$3 work=$4
 PATH=$bin:$PATH
@@ -43,6 +43,8 @@ if [ "$wanted" -eq 0 ]; then
 else
   [ "$errors" -eq 1 ] || fail "$errors error messages instead of one"
   grep ': error: ' stderr.txt | grep -Eq -- "$pattern" || fail "the message does not match: $pattern"
+  # one line and no chatter of libraries; usage (2) has more to say
+  [ "$wanted" -eq 2 ] || [ "$(wc -l <stderr.txt)" -eq 1 ] || fail "more than one line of standard error"
   left=$(find . -type f ! -name 'std*.txt' ! -name 'before.txt' | sort | diff before.txt - | grep '^>')
   case $left in *stdout.txt*|*stderr.txt*|'') ;; *) fail "left behind: $left" ;; esac
 fi

@@ -145,6 +145,53 @@ TEST_F(ErrorLine, AnExponentialLayerFromTheGroundAndFromAfar) {
   }
 }
 
+// A box that stands upright inside a shell: the sky's rays from samples on its walls run along
+// those walls but for 1e-18 of their length. Such a wall lies behind from the first metre on; each
+// step used to end there, a thousandth of a cell long, and llvmpipe cut the ray off.
+TEST_F(ErrorLine, RaysAlongTheWallsOfABoxInsideAShellTakeWholeCells) {
+  const glm::dvec3 up = glm::normalize(glm::dvec3(0.69, 0.085, 0.72));
+  const glm::dvec3 east = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), up));
+  const glm::dvec3 north = glm::cross(up, east);
+  const glm::dvec3 base =
+      geodetic_to_ecef_m(Ellipsoid::wgs84(), std::asin(up.z), std::atan2(up.y, up.x), 1500);
+  const double size_m = 1000;
+  const FieldSource ball(
+      std::make_shared<BoxChart>(base - 0.5 * size_m * (east + north),
+                                 glm::dmat3(size_m * east, size_m * north, size_m * up)),
+      isotropic(3), [&](glm::dvec3 p) {
+        const double r = glm::length(p - base - 0.5 * size_m * up) / (0.5 * size_m);
+        return 0.005 * std::max(0.0, 1 - r * r);
+      });
+  // Thin: what its light, interpolated over cells of 300 km, is off by does not hide the ball's.
+  const FieldSource layer(std::make_shared<ShellChart>(Ellipsoid::wgs84(), 0, 16000),
+                          Lattice({kSplitXyz, kSplitXyz}), [](glm::dvec3 p) {
+                            return 1e-6 *
+                                   std::exp(-geodetic_height_m(Ellipsoid::wgs84(), p) / 4000);
+                          });
+  RenderRequest request = request_of({&ball, &layer});
+  add_sky(request);
+  request.sky.up = up;
+  request.sun.to_sun = glm::normalize(up + 0.7 * east);
+  request.camera = {base + 900.0 * up - 2500.0 * north, base + 500.0 * up, up, 0.5};
+  request.settings.width = 24;
+  request.settings.height = 14;
+  request.settings.step_voxels = 0;
+  const HdrImage image = render(request).image, truth = exact_picture(request);
+  double depth = 0;
+  int through_ball = 0;
+  for (std::size_t p = 0; p < truth.optical_depth.size(); ++p) {
+    if (truth.optical_depth[p] > 0.5) ++through_ball;
+    depth = std::max(depth,
+                     std::abs(double(image.optical_depth[p]) / double(truth.optical_depth[p]) - 1));
+  }
+  const double error = picture_error(image, truth);
+  std::printf("measured: box inside a shell: %d rays through it, depth %.1e, luminance %.1e\n",
+              through_ball, depth, error);
+  EXPECT_GT(through_ball, 20);
+  EXPECT_LE(depth, 1e-4);
+  EXPECT_LE(error, 0.02);
+}
+
 TEST_F(ErrorLine, ShorterStepsConvergeOnTheExactSetting) {
   Random random;
   RenderRequest request = picture_of({&clumpy()}, random);

@@ -18,7 +18,8 @@ double relative(double got, double truth) {
   return std::abs(got / truth - 1);
 }
 
-// physics.md 1.4: I = w P / (4 pi) mu0 / (mu + mu0) (1 - exp(-tau (1/mu + 1/mu0))), up at the top.
+// First order of scattering in a slab, up at its top, what doubling starts from (Hansen and Travis
+// 1974): I = w P / (4 pi) mu0 / (mu + mu0) (1 - exp(-tau (1/mu + 1/mu0))).
 TEST_F(Renderer, SingleScatteringOfASlabSeenFromAbove) {
   for (const double tau : {1e-6, 0.1, 2.0, 30.0, 1e4}) {
     const double height_m = 1000, extinction = tau / height_m;

@@ -25,7 +25,7 @@ inline RenderRequest request_of(std::initializer_list<const BrickSource*> source
   RenderRequest request;
   for (const BrickSource* source : sources)
     request.volumes.push_back(
-        {source, 0, Phase{PhaseKind::kHenyeyGreenstein, 10e-6, 0.85}, glm::dvec3(0)});
+        {.source = source, .phase = Phase{PhaseKind::kHenyeyGreenstein, 10e-6, 0.85}});
   request.settings.width = 32;
   request.settings.height = 18;
   request.settings.probe_pixels = 0;

@@ -165,7 +165,7 @@ TEST(Forest, TreeIsWellFormed) {
         ++bricks;
         EXPECT_EQ(tree.bricks.at(node.brick).key, node.key);
       }
-      if (node.kind != NodeKind::kEmpty) lit_index[node.key] = node.lit;
+      if (node.kind != NodeKind::kEmpty && node.seen) lit_index[node.key] = node.lit;
     }
     for (const int times : seen) EXPECT_EQ(times, 1);
     EXPECT_EQ(bricks, tree.bricks.size());

@@ -81,6 +81,24 @@ TEST(Charts, HatsFillTheWorld) {
   }
 }
 
+// A hat is the sum of the finer ones under it: fewer points on finer lattices change no digit.
+TEST(ShellChart, HatsAgreeAcrossQuadratures) {
+  double worst = 0;
+  for (const std::uint32_t n : {128u, 2048u})
+    for (std::uint32_t i = 1; i < n; i += n / 16 - 1)
+      for (std::uint32_t j = 1; j < n; j += n / 16 - 1) {
+        double fine = 0;
+        for (std::uint32_t at = 0; at < 9; ++at) {
+          const Column column = {2, 2 * i + at % 3 - 1, 2 * j + at / 3 - 1};
+          const double weight = (at % 3 == 1 ? 1 : 0.5) * (at / 3 == 1 ? 1 : 0.5);
+          fine += weight * kEarth.hat_horizontal(column, {2 * n, 2 * n, 8});
+        }
+        worst = std::max(worst, std::abs(fine / kEarth.hat_horizontal({2, i, j}, {n, n, 8}) - 1));
+      }
+  test::report_accuracy("charts", "solid angle of hats across quadrature rules", worst, 1e-13, "1");
+  EXPECT_LE(worst, 1e-13);
+}
+
 TEST(ShellChart, GeodeticHeightClosedForm) {
   const Ellipsoid wgs84 = Ellipsoid::wgs84();
   for (const auto& [height_m, bound_m] :

@@ -21,7 +21,12 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope render plume.####.vdb --frame 12 -o p.exr   one frame of a sequence, linear light
   nephoscope render scene.json --size 1920x1080 --sun 120,15 -o dusk.png
   nephoscope render dusk.png -o again.png                the scene is in the picture: same bits
+  nephoscope render wrfout_d01.nc -o storm.png           place, time, view and sun are worked out
+  nephoscope render wrfout_d01.nc --time 2005-08-28T15:00Z --view globe -o globe.png
+  nephoscope render wrfout_d01.nc --at 29.9,-90.1 --heading 180 --pitch 12 -o street.png
+  nephoscope render wrfout_d01.nc --sun 2005-08-28T23:00Z --no-planet -o evening.png
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
+  nephoscope info wrfout_d01.nc --check                  and how well the bricks hold it
   nephoscope compare a.exr b.exr                         how far two pictures are apart)";
 
 void start_logging() {
@@ -56,7 +61,26 @@ void add_camera_options(CLI::App& command, RenderOptions& o) {
       ->group(group);
   command.add_option("--look-at", o.look_at, "the target, in the same ways")->group(group);
   command.add_option("--fov", o.fov_deg, "vertical field of view in degrees")->group(group);
-  command.add_option("--sun", o.sun, "AZIMUTH,ELEVATION in degrees")->group(group);
+  command
+      .add_option("--at", o.at, "LAT,LON[,HEIGHT]: stand on the ground there, the eye 2 m above it")
+      ->excludes("--look-from")
+      ->excludes("--look-at")
+      ->group(group);
+  command.add_option("--heading", o.heading_deg, "with --at: degrees clockwise from north")
+      ->group(group);
+  command.add_option("--pitch", o.pitch_deg, "with --at: degrees above the horizon")->group(group);
+  command.add_option("--view", o.view, "of a planet's weather: auto, oblique, globe or ground")
+      ->excludes("--look-from")
+      ->excludes("--look-at")
+      ->excludes("--at")
+      ->group(group);
+  command
+      .add_option("--sun", o.sun,
+                  "AZIMUTH,ELEVATION in degrees, or a date: where it stands at 2005-08-28T15:00Z")
+      ->group(group);
+  command.add_option("--time", o.time, "of the data: 2005-08-28T15:00Z, or seconds")->group(group);
+  command.add_flag("--no-planet", o.no_planet, "weather without its planet's ground and air")
+      ->group(group);
   command.add_option("--exposure", o.exposure_ev, "in stops (EV); otherwise from the picture")
       ->group(group);
   command.add_option("--tone-map", o.tone_map, "aces or none")->group(group);
@@ -83,6 +107,15 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
       ->group(group);
 }
 
+// A value given twice is a bad value; CLI11 calls it the same as a missing one.
+void refuse_repeated(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands())
+    for (const CLI::Option* option : command->get_options())
+      if (option->get_items_expected_max() == 1 && option->count() > 1)
+        throw Error({"given more than once", option->get_name(), "one value",
+                     "'" + option->results()[0] + "' and '" + option->results()[1] + "'", ""});
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Draws clouds as they are: any source, one contract, a stated error.", "nephoscope");
   app.set_version_flag("--version", "nephoscope " NEPHO_VERSION);
@@ -99,6 +132,8 @@ int run(int argc, char** argv) {
   add_data_options(*draw, render.grid, render.up, render.metres_per_unit, render.density_scale,
                    render.frame);
   draw->add_option("--fps", render.fps, "frames per second of a sequence (24)")->group("Data");
+  draw->add_flag("--force", render.force, "draw values that no cloud has (NetCDF)")->group("Data");
+  draw->add_flag("--explain-macros", render.explain_macros, "")->group("");
   draw->footer(kExamples);
   draw->callback([&] { render_command(render); });
 
@@ -106,6 +141,9 @@ int run(int argc, char** argv) {
   CLI::App* tell = app.add_subcommand("info", "what is in a file, a scene or a picture");
   tell->add_option("FILE", info.input, "data, SCENE.json or PICTURE")->required();
   tell->add_flag("--json", info.json, "for programs");
+  tell->add_flag("--check", info.check, "the source's own field against its finest bricks");
+  tell->add_option("--time", info.time, "of the data: 2005-08-28T15:00Z, or seconds");
+  tell->add_flag("--force", info.force, "take values that no cloud has (NetCDF)")->group("Data");
   add_data_options(*tell, info.grid, info.up, info.metres_per_unit, info.density_scale, info.frame);
   tell->callback([&] { info_command(info); });
 
@@ -121,6 +159,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
+    refuse_repeated(app);
     spdlog::error("{} (see nephoscope --help)", e.what());
     return 2;
   }

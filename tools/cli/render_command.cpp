@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/commands.h"
@@ -6,6 +7,7 @@
 #include "common/gl_context.h"
 #include "common/open_scene.h"
 #include "common/output_file.h"
+#include "common/planet_scene.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "image/tone.h"
@@ -68,6 +70,16 @@ void print_result(const fs::path& output, const OpenedScene& opened, const std::
               usage.cpu_s, usage.wall_s, usage.peak_mib);
 }
 
+// What no one would notice was without an effect.
+void refuse_idle_options(const RenderOptions& options, const Scene& asked,
+                         const OpenedScene& opened) {
+  const bool weather = std::ranges::any_of(
+      opened.sources, [](const auto& source) { return source->info().on_planet; });
+  if (options.no_planet && !weather && !asked.planet)
+    throw Error({"nothing to leave out", "--no-planet", "a volume that is weather of a planet",
+                 "none", ""});
+}
+
 }  // namespace
 
 void render_command(const RenderOptions& options) {
@@ -76,20 +88,31 @@ void render_command(const RenderOptions& options) {
   const Scene scene = scene_from(options, pictures);
   const fs::path output = output_of(options, pictures);
   const PictureFormat format = picture_format(output);
+  Libraries libraries;
+  libraries.start = mapped_libraries();
   pictures.check_format(output);
+  libraries.format_known = mapped_libraries();
   // Before any work: what cannot be written later is known now.
   OutputFile file(output, largest_size(scene.render, format));
   const auto context = make_egl_context();
+  libraries.device = mapped_libraries();
   OpenedScene opened = open_scene(host, scene);
+  refuse_idle_options(options, scene, opened);
+  libraries.scene_open = mapped_libraries();
 
   const RenderResult result = render(opened.request);
   const FloatImage linear = linear_image(result.image);
   const bool find_exposure = !opened.scene.exposure_ev;
-  if (find_exposure) opened.scene.exposure_ev = exposure_from(linear, result.image.optical_depth);
+  const bool planet = opened.scene.planet.has_value();
+  if (find_exposure)
+    opened.scene.exposure_ev =
+        planet ? exposure_on_planet(linear, result.image.optical_depth, white_in_the_sun(opened))
+               : exposure_from(linear, result.image.optical_depth);
+  const glm::dvec3 white = planet ? opened.request.sun.irradiance_W_per_m2_nm : glm::dvec3(1);
   const ByteImage shown = is_linear(format)
                               ? ByteImage()
                               : to_display(linear, *opened.scene.exposure_ev, opened.scene.tone_map,
-                                           opened.scene.dither);
+                                           opened.scene.dither, white);
   const std::string error = error_line(result.error);
   pictures.write(
       file.temporary(), format, shown, linear,
@@ -98,11 +121,13 @@ void render_command(const RenderOptions& options) {
        {"nephoscope:assumptions", joined(opened.assumptions)},
        {"nephoscope:version", NEPHO_VERSION}});
   file.commit();
+  libraries.picture_written = mapped_libraries();
   print_result(output, opened, error, find_exposure);
   if (options.explain)
-    std::printf(
-        "%s",
-        explanation(opened, result, context->description(), PictureFiles::module_loaded()).c_str());
+    std::printf("%s", explanation(opened, result, context->description(), libraries).c_str());
+  if (options.explain_macros)
+    for (const std::string& macro : result.report.shader_switches)
+      std::printf("macro: %s\n", macro.c_str());
 }
 
 }  // namespace nepho

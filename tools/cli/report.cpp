@@ -2,8 +2,10 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 namespace nepho {
@@ -49,7 +51,39 @@ void list(std::ostringstream& out, const char* title, const std::vector<std::str
   for (const std::string& line : lines) out << "  " << line << '\n';
 }
 
+std::vector<std::string> added(const std::vector<std::string>& before,
+                               const std::vector<std::string>& after) {
+  std::vector<std::string> result;
+  std::ranges::set_difference(after, before, std::back_inserter(result));
+  return result;
+}
+
+// EACH_*: loops that are written out, one call a turn; they say nothing of the scene.
+std::vector<std::string> without_loops(std::vector<std::string> switches) {
+  std::erase_if(switches, [](const std::string& s) { return s.starts_with("EACH_"); });
+  return switches;
+}
+
+bool has_ice(const std::unique_ptr<BrickSource>& source) {
+  return std::ranges::any_of(source->info().channels, [](const ChannelInfo& channel) {
+    return channel.channel == Channel::kIceExtinction;
+  });
+}
+
 }  // namespace
+
+std::vector<std::string> mapped_libraries() {
+  std::ifstream maps("/proc/self/maps");
+  std::vector<std::string> names;
+  for (std::string line; std::getline(maps, line);) {
+    const std::size_t slash = line.rfind('/');
+    if (slash == std::string::npos || line.find(".so", slash) == std::string::npos) continue;
+    names.push_back(line.substr(slash + 1));
+  }
+  std::ranges::sort(names);
+  names.erase(std::ranges::unique(names).begin(), names.end());
+  return names;
+}
 
 std::string error_line(const ErrorEstimate& error) {
   std::string line = "error (estimated): integration " + percent(error.integration) +
@@ -70,13 +104,16 @@ Usage usage_now() {
 }
 
 std::string explanation(const OpenedScene& opened, const RenderResult& result,
-                        const std::string& context, bool picture_module_used) {
+                        const std::string& context, const Libraries& libraries) {
   const RenderReport& report = result.report;
   std::ostringstream out;
   out << "device: " << context << "; " << report.device << '\n';
-  std::vector<std::string> modules = SourceHost::loaded();
-  if (picture_module_used) modules.push_back("nepho_image_oiio (pictures)");
-  list(out, "modules loaded:", modules);
+  list(out, "modules loaded:", SourceHost::loaded());
+  list(out, "libraries that the scene brought in:", added(libraries.device, libraries.scene_open));
+  std::vector<std::string> of_picture = added(libraries.start, libraries.format_known);
+  std::ranges::copy(added(libraries.scene_open, libraries.picture_written),
+                    std::back_inserter(of_picture));
+  list(out, "libraries that the picture brought in:", of_picture);
   out << "volumes:\n";
   for (const VolumeReport& v : report.volumes)
     out << format(
@@ -95,12 +132,16 @@ std::string explanation(const OpenedScene& opened, const RenderResult& result,
   out << "bytes: budget " << opened.scene.render.budget_mib << " MiB, used " << mib(inside)
       << " (atlas " << mib(report.atlas_bytes) << ", sun " << mib(report.sun_bytes) << ", nodes "
       << mib(report.node_bytes) << ", staging " << mib(report.staging_bytes) << "); apart: image "
-      << mib(report.image_bytes) << ", sources " << mib(report.source_bytes) << '\n';
+      << mib(report.image_bytes) << ", planet " << mib(report.planet_bytes) << ", sources "
+      << mib(report.source_bytes) << '\n';
   out << "passes (CPU):\n";
   for (const PassReport& pass : report.passes)
     out << format("  %-24s %8.3f s\n", pass.name.c_str(), pass.cpu_s);
-  list(out, "shader switches:", report.shader_switches);
-  list(out, "left out:", report.left_out);
+  list(out, "shader switches:", without_loops(report.shader_switches));
+  std::vector<std::string> left_out = report.left_out;
+  if (std::ranges::none_of(opened.sources, has_ice))
+    left_out.push_back("the second channel: no volume tells ice apart");
+  list(out, "left out:", left_out);
   return out.str();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/open_scene.h"
 #include "renderer.h"
@@ -17,8 +18,16 @@ struct Usage {
 };
 Usage usage_now();
 
-// What --explain prints: modules, bricks, bytes, passes, switches, and what was left out.
+// File names of the shared libraries that this process has mapped (/proc/self/maps), ascending.
+std::vector<std::string> mapped_libraries();
+// Those that were there at each step of a command, in this order.
+struct Libraries {
+  std::vector<std::string> start, format_known, device, scene_open, picture_written;
+};
+
+// What --explain prints: modules and the libraries that came with them, bricks, bytes, passes,
+// switches, and what was left out.
 std::string explanation(const OpenedScene& opened, const RenderResult& result,
-                        const std::string& context, bool picture_module_used);
+                        const std::string& context, const Libraries& libraries);
 
 }  // namespace nepho

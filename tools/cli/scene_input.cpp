@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <fstream>
 #include <glm/gtc/constants.hpp>
 
 #include "cli/values.h"
@@ -10,11 +11,28 @@
 #include "geo/place.h"
 #include "scene/parameter.h"
 #include "scene/scene_file.h"
+#include "scene/utc.h"
 
 namespace nepho {
 namespace {
 
 namespace fs = std::filesystem;
+
+// "2005-..." is a date; no number has a minus there.
+bool is_date(const std::string& text) {
+  return text.size() > 4 && text[4] == '-' && std::isdigit(static_cast<unsigned char>(text[0])) &&
+         std::isdigit(static_cast<unsigned char>(text[3]));
+}
+
+std::string first_bytes(const std::string& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return "";  // a pattern, or a pipe
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(8, '\0');
+  in.read(bytes.data(), std::streamsize(bytes.size()));
+  bytes.resize(std::size_t(in.gcount()));
+  return bytes;
+}
 
 std::string ending_of(const fs::path& path) {
   std::string ending = path.extension().string();
@@ -32,9 +50,72 @@ glm::dvec3 point_value(const std::string& option, const std::string& text, const
   return {place.origin_ecef_m[0], place.origin_ecef_m[1], place.origin_ecef_m[2]};
 }
 
+// "LAT,LON" or "LAT,LON,HEIGHT".
+Stand stand_value(const std::string& text) {
+  constexpr const char* shape = "LAT,LON or LAT,LON,HEIGHT in degrees and metres above the ground";
+  const bool has_height = std::count(text.begin(), text.end(), ',') == 2;
+  const std::vector<double> v = list_value("--at", text, has_height ? 3 : 2, shape);
+  if (std::abs(v[0]) > 90 || std::abs(v[1]) > 360)
+    throw Error({"bad value", "--at", "latitude to 90 and longitude to 360 degrees",
+                 "'" + text + "'", "latitude comes first"});
+  Stand stand;
+  stand.latitude_deg = v[0];
+  stand.longitude_deg = v[1];
+  if (!has_height) return stand;
+  if (!(v[2] >= 0.01 && v[2] <= 1e5))
+    throw Error({"bad value", "--at", "a height from 0.01 to 100000 m above the ground",
+                 "'" + text + "'", ""});
+  stand.eye_height_m = v[2];
+  return stand;
+}
+
+View view_value(const std::string& text) {
+  const std::string word = choice_value("--view", text, "camera", "view");
+  return word == "oblique"  ? View::kOblique
+         : word == "globe"  ? View::kGlobe
+         : word == "ground" ? View::kGround
+                            : View::kAuto;
+}
+
+// What the scene says of eye, target and stand gives way to the option that says something else.
+void apply_stand(Scene& scene, const RenderOptions& o) {
+  CameraSpec& camera = scene.camera;
+  const auto clear = [&] {
+    const auto fov_rad = camera.vertical_fov_rad;
+    camera = {};
+    camera.vertical_fov_rad = fov_rad;
+  };
+  if (o.at) {
+    clear();
+    camera.stand = stand_value(*o.at);
+  }
+  if (o.view) {
+    clear();
+    camera.view = view_value(*o.view);
+  }
+  for (const auto& [option, value] :
+       {std::pair{"--heading", &o.heading_deg}, std::pair{"--pitch", &o.pitch_deg}})
+    if (*value && !camera.stand)
+      throw Error({"nothing to apply it to", option, "--at, or a scene with a stand", "none", ""});
+  const auto angle = [](const char* option, const std::string& text, double most) {
+    const double value = number_value(option, text);
+    if (std::abs(value) > most)
+      throw Error({"bad value", option, "to " + std::to_string(int(most)) + " degrees",
+                   "'" + text + "'", ""});
+    return value;
+  };
+  if (o.heading_deg) camera.stand->azimuth_deg = angle("--heading", *o.heading_deg, 360);
+  if (o.pitch_deg) camera.stand->elevation_deg = angle("--pitch", *o.pitch_deg, 90);
+}
+
 void apply_camera(Scene& scene, const RenderOptions& o) {
   const Placement frame = scene_frame(scene);
-  if (o.look_from || o.look_at) scene.camera.up.reset();  // worked out for another view
+  if (o.look_from || o.look_at) {  // worked out for another view
+    scene.camera.up.reset();
+    scene.camera.stand.reset();
+    scene.camera.view = View::kAuto;
+  }
+  apply_stand(scene, o);
   if (o.look_from) scene.camera.eye_m = point_value("--look-from", *o.look_from, frame);
   if (o.look_at) scene.camera.target_m = point_value("--look-at", *o.look_at, frame);
   if (o.fov_deg)
@@ -44,14 +125,36 @@ void apply_camera(Scene& scene, const RenderOptions& o) {
     throw Error({"camera looks nowhere", "--look-from", "a point apart from --look-at", "", ""});
 }
 
-void apply_light(Scene& scene, const RenderOptions& o) {
-  if (o.sun) {
-    const std::vector<double> v = list_value("--sun", *o.sun, 2, "AZIMUTH,ELEVATION in degrees");
-    if (std::abs(v[0]) > 360 || std::abs(v[1]) > 90)
-      throw Error({"bad value", "--sun", "azimuth to 360 and elevation to 90 degrees",
-                   "'" + *o.sun + "'", ""});
-    scene.sun.to_sun = sun_direction(scene_frame(scene), glm::radians(v[0]), glm::radians(v[1]));
+// "AZIMUTH,ELEVATION", or a date.
+void apply_sun(Scene& scene, const std::string& text) {
+  SunSpec& sun = scene.sun;
+  sun.to_sun.reset();
+  sun.azimuth_elevation_deg.reset();
+  sun.utc_ns.reset();
+  if (is_date(text)) {
+    sun.utc_ns = utc_ns_value(text, "--sun");
+    return;
   }
+  const std::vector<double> v = list_value(
+      "--sun", text, 2, "AZIMUTH,ELEVATION in degrees, or a date such as 2005-08-28T15:00Z");
+  if (std::abs(v[0]) > 360 || std::abs(v[1]) > 90)
+    throw Error(
+        {"bad value", "--sun", "azimuth to 360 and elevation to 90 degrees", "'" + text + "'", ""});
+  // Without a place the angles wait for the one that the camera looks at.
+  if (has_frame(scene))
+    sun.to_sun = sun_direction(scene_frame(scene), glm::radians(v[0]), glm::radians(v[1]));
+  else
+    sun.azimuth_elevation_deg = {v[0], v[1]};
+}
+
+void apply_planet(Scene& scene, const RenderOptions& o) {
+  if (!o.no_planet) return;
+  scene.planet.reset();
+  scene.no_planet = true;
+}
+
+void apply_light(Scene& scene, const RenderOptions& o) {
+  if (o.sun) apply_sun(scene, *o.sun);
   if (o.exposure_ev)
     scene.exposure_ev = number_value("--exposure", *o.exposure_ev, "scene", "exposure_ev");
   if (o.tone_map)
@@ -119,11 +222,54 @@ VolumeSpec data_volume(const std::string& file) {
   VolumeSpec volume;
   volume.files = {fs::absolute(file).lexically_normal().string()};
   volume.name = fs::path(file).stem().string();
+  const std::string bytes = first_bytes(file);
+  // Models name their files as they like: wrfout_d01_2005-08-28_00:00:00.
+  const bool classic = bytes.starts_with("CDF") && bytes.size() > 3 &&
+                       (bytes[3] == 1 || bytes[3] == 2 || bytes[3] == 5);
+  if (classic || bytes.starts_with("\x89HDF")) {
+    volume.source = "netcdf";
+    return volume;
+  }
+  if (bytes.starts_with("GRIB"))
+    throw Error({"GRIB is not read", file, "NetCDF or VDB", "GRIB",
+                 "grib_to_netcdf (ecCodes) or cdo -f nc copy make NetCDF of it"});
+  if (bytes.starts_with(std::string("II*\0", 4)) || bytes.starts_with(std::string("MM\0*", 4)))
+    throw Error({"a raster is no cloud field", file, "NetCDF or VDB", "TIFF", ""});
   const std::string ending = ending_of(file);
   if (ending.empty())
-    throw Error({"unknown kind of file", file, "a name with an ending, such as .vdb", "none", ""});
+    throw Error({"unknown kind of file", file, "NetCDF, or a name with an ending, such as .vdb",
+                 "none", ""});
   volume.source = ending.substr(1);
   return volume;
+}
+
+void set_time(Scene& scene, const std::optional<std::string>& value) {
+  if (!value) return;
+  const bool any =
+      std::ranges::any_of(scene.volumes, [](const auto& v) { return !v.files.empty(); });
+  for (VolumeSpec& volume : scene.volumes) {
+    if (any && volume.files.empty()) continue;
+    volume.time_s.reset();
+    volume.utc_ns.reset();
+    if (is_date(*value))
+      volume.utc_ns = utc_ns_value(*value, "--time");
+    else
+      volume.time_s = number_value("--time", *value);
+    volume.where = "--time";
+  }
+}
+
+void set_force(Scene& scene, bool force) {
+  if (!force) return;
+  bool used = false;
+  for (VolumeSpec& volume : scene.volumes) {
+    if (volume.files.empty()) continue;
+    used = true;
+    auto& all = volume.parameters;
+    std::erase_if(all, [](const SourceParameter& p) { return p.name == "force"; });
+    all.push_back({"force", "", 1, "", false, "--force"});
+  }
+  if (!used) throw Error({"nothing to apply it to", "--force", "a volume with files", "none", ""});
 }
 
 void set_parameter(Scene& scene, const char* parameter, const std::string& option,
@@ -162,7 +308,10 @@ Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
   set_parameter(scene, "density_scale", "--density-scale", o.density_scale);
   set_parameter(scene, "frame", "--frame", o.frame);
   set_parameter(scene, "fps", "--fps", o.fps);
+  set_time(scene, o.time);
+  set_force(scene, o.force);
   apply_quality(scene, o);
+  apply_planet(scene, o);
   apply_camera(scene, o);
   apply_light(scene, o);
   return scene;

@@ -17,11 +17,16 @@ enum class InputKind { kScene, kPicture, kData };
 InputKind input_kind(const std::string& input);
 // The scene in a picture's metadata; throws Error where there is none.
 Scene scene_in_picture(const std::filesystem::path& path, const PictureFiles& pictures);
-// One volume of one data file (or name.####.vdb).
+// One volume of one data file (or name.####.vdb): NetCDF by its first bytes, all else by its
+// ending. Throws Error for what is known to be something else.
 VolumeSpec data_volume(const std::string& file);
 
 // Lays an option over every volume that has files.
 void set_parameter(Scene& scene, const char* parameter, const std::string& option,
                    const std::optional<std::string>& value);
+// "2005-08-28T15:00Z" or seconds, for every volume with files; for all where none has any.
+void set_time(Scene& scene, const std::optional<std::string>& value);
+// --force, for every volume with files.
+void set_force(Scene& scene, bool force);
 
 }  // namespace nepho

@@ -5,8 +5,10 @@
 
 #include "bricks/box_chart.h"
 #include "common/framing.h"
+#include "common/planet_scene.h"
 #include "core/error.h"
 #include "scene/scene_file.h"
+#include "sun/sun_position.h"
 
 namespace nepho {
 namespace {
@@ -15,6 +17,8 @@ namespace {
 // 550, 450 nm behind the air, and the blue that the air made of the rest. Rounded: a background to
 // look at, until the atmosphere is computed.
 constexpr glm::dvec3 kSunIrradiance_W_per_m2_nm{1.42, 1.50, 1.45};
+// Outside the air, at 1 au: ASTM G173-03 (2003), extraterrestrial, at 650, 550, 450 nm.
+constexpr glm::dvec3 kSunOutside_W_per_m2_nm{1.52143, 1.8504, 2.03474};
 constexpr glm::dvec3 kZenith_W_per_m2_sr_nm{0.018, 0.040, 0.092};
 constexpr glm::dvec3 kHorizon_W_per_m2_sr_nm{0.078, 0.108, 0.150};
 constexpr glm::dvec3 kBelow_W_per_m2_sr_nm{0.032, 0.038, 0.044};
@@ -85,21 +89,73 @@ Camera find_camera(const OpenedScene& opened, const Placement& frame) {
       std::ranges::any_of(opened.sources, [](const auto& s) { return endless(*s); }));
 }
 
-void find_light(OpenedScene& opened, const Placement& frame, const Camera& camera) {
-  Scene& scene = opened.scene;
+// For clouds that are on no planet.
+void find_sun(OpenedScene& opened, const Placement& frame, const Camera& camera) {
+  SunSpec& sun = opened.scene.sun;
+  if (sun.azimuth_elevation_deg) {
+    const glm::dvec2 angles_rad = glm::radians(*sun.azimuth_elevation_deg);
+    sun.to_sun = sun_direction(frame, angles_rad.x, angles_rad.y);
+    sun.azimuth_elevation_deg.reset();
+  }
+  if (sun.utc_ns) {
+    sun.to_sun = sun_position(*sun.utc_ns).to_sun;
+    sun.utc_ns.reset();
+  }
+  if (sun.to_sun) return;
   const glm::dvec3 about = glm::length(camera.target_m) > 1e5 ? camera.target_m : camera.eye_m;
-  const LocalAxes axes = axes_at(opened, frame, about);
-  if (!scene.sun.to_sun) {
-    scene.sun.to_sun = sun_over_left_shoulder(camera, axes.up);
-    opened.assumptions.push_back("sun: 40 degrees high, behind the camera's left shoulder");
+  sun.to_sun = sun_over_left_shoulder(camera, axes_at(opened, frame, about).up);
+  opened.assumptions.push_back("sun: 40 degrees high, behind the camera's left shoulder");
+}
+
+void find_sky(OpenedScene& opened, const Placement& frame, const Camera& camera) {
+  Scene& scene = opened.scene;
+  if (scene.planet || scene.sky) return;
+  const glm::dvec3 about = glm::length(camera.target_m) > 1e5 ? camera.target_m : camera.eye_m;
+  scene.sky = Sky{axes_at(opened, frame, about).up, kZenith_W_per_m2_sr_nm, kHorizon_W_per_m2_sr_nm,
+                  kBelow_W_per_m2_sr_nm};
+  opened.assumptions.push_back("sky: a clear day's gradient");
+}
+
+// A place to stand, a view of a planet and a date are nothing to clouds that are nowhere.
+void refuse_planets_wishes(const Scene& scene) {
+  const auto refuse = [](const char* what, const char* where) {
+    throw Error(
+        {what, where, "a volume that is weather of a planet, or a scene with one", "none", ""});
+  };
+  if (scene.camera.stand) refuse("no ground to stand on", "camera.stand (--at)");
+  if (scene.camera.view != View::kAuto) refuse("no planet to view", "camera.view (--view)");
+  if (scene.sun.utc_ns && !has_frame(scene))
+    refuse("no planet under the sun of a date", "sun.utc (--sun)");
+}
+
+// Times and camera of clouds that are on no planet.
+Camera frame_freely(OpenedScene& opened, const Placement& frame) {
+  refuse_planets_wishes(opened.scene);
+  for (std::size_t v = 0; v < opened.sources.size(); ++v) {
+    VolumeSpec& volume = opened.scene.volumes[v];
+    const BrickSource& source = *opened.sources[v];
+    const VolumeInfo& info = source.info();
+    if (volume.utc_ns) volume.time_s = time_at(info, *volume.utc_ns, "volume '" + info.name + "'");
+    volume.utc_ns.reset();
+    const double time_s = volume.time_s ? time_of(volume, info) : first_time_with_cloud(source);
+    if (time_s != info.times_s.front() && !volume.time_s)
+      opened.assumptions.push_back(info.name + ": the first time that is not empty, " +
+                                   number_text(time_s) + " s");
+    opened.request.volumes[v].time_s = time_s;
   }
-  if (!scene.sun.irradiance_W_per_m2_nm)
-    scene.sun.irradiance_W_per_m2_nm = kSunIrradiance_W_per_m2_nm;
-  if (!scene.sky) {
-    scene.sky =
-        Sky{axes.up, kZenith_W_per_m2_sr_nm, kHorizon_W_per_m2_sr_nm, kBelow_W_per_m2_sr_nm};
-    opened.assumptions.push_back("sky: a clear day's gradient");
+  const CameraSpec& wish = opened.scene.camera;
+  const bool framed = !wish.eye_m || !wish.target_m;
+  const Camera camera = find_camera(opened, frame);
+  if (framed) {
+    const glm::dvec3 eye = to_local(frame, camera.eye_m), target = to_local(frame, camera.target_m);
+    const auto point = [](const glm::dvec3& p) {
+      return number_text(p.x) + "," + number_text(p.y) + "," + number_text(p.z);
+    };
+    opened.assumptions.push_back("camera: frames the cloud, --look-from " + point(eye) +
+                                 " --look-at " + point(target));
   }
+  find_sun(opened, frame, camera);
+  return camera;
 }
 
 [[noreturn]] void rethrow_with_place(const Error& error, const VolumeSpec& volume) {
@@ -148,34 +204,37 @@ OpenedScene open_scene(const SourceHost& host, Scene scene) {
   for (const VolumeSpec& volume : opened.scene.volumes) {
     opened.sources.push_back(open_volume(host, volume));
     const VolumeInfo& info = opened.sources.back()->info();
-    const double time_s =
-        volume.time_s ? time_of(volume, info) : first_time_with_cloud(*opened.sources.back());
-    if (time_s != info.times_s.front() && !volume.time_s)
-      opened.assumptions.push_back(info.name + ": the first time that is not empty, " +
-                                   number_text(time_s) + " s");
-    opened.request.volumes.push_back({opened.sources.back().get(), time_s,
+    opened.request.volumes.push_back({opened.sources.back().get(), 0.0,
                                       volume.phase.value_or(info.phase), info.ice_phase,
                                       volume.co_albedo.value_or(info.co_albedo)});
     for (const std::string& text : info.assumptions)
       opened.assumptions.push_back(info.name + ": " + text);
   }
   const Placement frame = scene_frame(opened.scene);
-  const CameraSpec& wish = opened.scene.camera;
-  const bool framed = !wish.eye_m || !wish.target_m;
-  const Camera camera = find_camera(opened, frame);
-  if (framed) {
-    const glm::dvec3 eye = to_local(frame, camera.eye_m), target = to_local(frame, camera.target_m);
-    const auto point = [](const glm::dvec3& p) {
-      return number_text(p.x) + "," + number_text(p.y) + "," + number_text(p.z);
-    };
-    opened.assumptions.push_back("camera: frames the cloud, --look-from " + point(eye) +
-                                 " --look-at " + point(target));
+  resolve_planet(opened);
+  Camera camera;
+  glm::dvec3 irradiance = kSunIrradiance_W_per_m2_nm;
+  if (const auto body = body_of(opened)) {
+    const PlanetShot shot = frame_on_planet(opened, *body);
+    camera = shot.camera;
+    // Above the air, and the farther the fainter.
+    if (opened.scene.planet)
+      irradiance = kSunOutside_W_per_m2_nm / (shot.sun_distance_au * shot.sun_distance_au);
+  } else {
+    camera = frame_freely(opened, frame);
   }
-  find_light(opened, frame, camera);
-  opened.scene.camera = {camera.eye_m, camera.target_m, camera.up, camera.vertical_fov_rad};
+  SunSpec& sun = opened.scene.sun;
+  if (!sun.irradiance_W_per_m2_nm) sun.irradiance_W_per_m2_nm = irradiance;
+  find_sky(opened, frame, camera);
+  opened.scene.camera = {};
+  opened.scene.camera.eye_m = camera.eye_m;
+  opened.scene.camera.target_m = camera.target_m;
+  opened.scene.camera.up = camera.up;
+  opened.scene.camera.vertical_fov_rad = camera.vertical_fov_rad;
   opened.request.camera = camera;
-  opened.request.sun = {*opened.scene.sun.to_sun, *opened.scene.sun.irradiance_W_per_m2_nm};
-  opened.request.sky = *opened.scene.sky;
+  opened.request.sun = {*sun.to_sun, *sun.irradiance_W_per_m2_nm};
+  opened.request.planet = opened.scene.planet;
+  if (opened.scene.sky) opened.request.sky = *opened.scene.sky;
   opened.request.settings = opened.scene.render;
   return opened;
 }

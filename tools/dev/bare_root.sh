@@ -49,17 +49,19 @@ if [ -n "${REAL_DATA:-}" ]; then
   mount_in /real_data --bind -o ro "$REAL_DATA"
 fi
 
+home=$(chroot "$inside" getent passwd root | cut -d: -f6)  # inside
+
 run_inside() {  # run_inside LABEL COMMAND...
   local label=$1 start_s=$SECONDS status=0
   shift
-  chroot "$inside" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
+  chroot "$inside" /usr/bin/env -i HOME="$home" PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
     ${JOBS:+JOBS=$JOBS} ${REAL_DATA:+NEPHO_REAL_DATA=/real_data} "$@" || status=$?
   echo "bare_root: $label: exit $status, $((SECONDS - start_s)) s"
   [ $status = 0 ] || exit $status
 }
 
 for command in "${commands[@]}"; do
-  rm -rf "$inside/src/nephoscope" "$inside/root/.cache"
+  rm -rf "$inside/src/nephoscope" "$inside$home/.cache"
   git clone -q --no-local "$repo" "$inside/src/nephoscope"
   echo "bare_root: tools/$command.sh at $(git -C "$repo" rev-parse --short HEAD)"
   run_inside "$command cold" "/src/nephoscope/tools/$command.sh"

@@ -20,17 +20,48 @@ std::uint8_t to_byte(double value, double threshold) {
   return std::uint8_t(std::clamp(std::floor(value * 255 + 0.5 + threshold), 0.0, 255.0));
 }
 
+// Hundredths, so that the number that is printed is the number that is used.
+double exposure_for(double luminance) {
+  return luminance > 0 ? std::round(100 * std::log2(kBrightCloud / luminance)) / 100 : 0;
+}
+
+struct Luminances {
+  std::vector<double> cloud, all;
+};
+Luminances luminances(const FloatImage& radiance, std::span<const float> optical_depth) {
+  Luminances out;
+  for (std::size_t p = 0; p < radiance.count(); ++p) {
+    const float* in = radiance.values.data() + p * std::size_t(radiance.channels);
+    const double y = f64::luminance(double(in[0]), double(in[1]), double(in[2]));
+    if (!std::isfinite(y)) continue;
+    out.all.push_back(y);
+    if (p < optical_depth.size() && optical_depth[p] > 0.1f) out.cloud.push_back(y);
+  }
+  return out;
+}
+
+// 0 of nothing.
+double percentile(std::vector<double>& values, double part) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 }  // namespace
 
-ByteImage to_display(const FloatImage& radiance, double exposure_ev, ToneMap tone_map,
-                     bool dither) {
+ByteImage to_display(const FloatImage& radiance, double exposure_ev, ToneMap tone_map, bool dither,
+                     const glm::dvec3& white) {
   ByteImage out(radiance.width, radiance.height, 3);
-  const double scale = std::exp2(exposure_ev);
+  const double grey = f64::luminance(white.x, white.y, white.z);
+  glm::dvec3 scale(std::exp2(exposure_ev));
+  for (int c = 0; c < 3; ++c)
+    if (white[c] > 0) scale[c] *= grey / white[c];
   for (std::size_t p = 0; p < radiance.count(); ++p) {
     const float* in = radiance.values.data() + p * std::size_t(radiance.channels);
     double shown[3];
     for (int c = 0; c < 3; ++c) {
-      const double value = scale * double(in[c]);
+      const double value = scale[c] * double(in[c]);
       shown[c] = std::isnan(value) ? 0 : std::clamp(value, 0.0, 1e30);
     }
     if (tone_map == ToneMap::kAces)
@@ -44,20 +75,21 @@ ByteImage to_display(const FloatImage& radiance, double exposure_ev, ToneMap ton
 }
 
 double exposure_from(const FloatImage& radiance, std::span<const float> optical_depth) {
-  std::vector<double> cloud, all;
-  for (std::size_t p = 0; p < radiance.count(); ++p) {
-    const float* in = radiance.values.data() + p * std::size_t(radiance.channels);
-    const double y = f64::luminance(double(in[0]), double(in[1]), double(in[2]));
-    if (!std::isfinite(y)) continue;
-    all.push_back(y);
-    if (p < optical_depth.size() && optical_depth[p] > 0.1f) cloud.push_back(y);
-  }
-  std::vector<double>& counted = cloud.empty() ? all : cloud;
-  if (counted.empty()) return 0;
-  const auto bright = counted.begin() + std::ptrdiff_t(0.95 * double(counted.size() - 1));
-  std::nth_element(counted.begin(), bright, counted.end());
-  // Hundredths, so that the number that is printed is the number that is used.
-  return *bright > 0 ? std::round(100 * std::log2(kBrightCloud / *bright)) / 100 : 0;
+  Luminances y = luminances(radiance, optical_depth);
+  return exposure_for(percentile(y.cloud.empty() ? y.all : y.cloud, 0.95));
+}
+
+double exposure_on_planet(const FloatImage& radiance, std::span<const float> optical_depth,
+                          double white) {
+  constexpr double kNextToNone = 0.005, kDark = 0.1, kClear = 0.8;
+  Luminances y = luminances(radiance, optical_depth);
+  [[maybe_unused]] const double dark = kDark * percentile(y.all, 0.995);
+#ifndef NEPHO_MUTANT_DARK_COUNTS
+  std::erase_if(y.cloud, [&](double cloud) { return cloud < dark; });
+#endif
+  if (double(y.cloud.size()) <= kNextToNone * double(y.all.size()))
+    return exposure_for(std::max(kClear * white, kClear * percentile(y.all, 0.95)));
+  return exposure_for(std::max(percentile(y.cloud, 0.95), kGreyCloud * white));
 }
 
 }  // namespace nepho

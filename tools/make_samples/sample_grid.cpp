@@ -1,11 +1,11 @@
 #include "sample_grid.h"
 
-#include <dlfcn.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 
 #include "core/error.h"
+#include "loaded_module.h"
 
 namespace nepho::samples {
 namespace {
@@ -81,21 +81,10 @@ std::vector<SampleBlock> sample(const Voxel& low, const Voxel& high, const Voxel
   return blocks;
 }
 
-VdbWriter::VdbWriter(const std::vector<std::filesystem::path>& folders) : write_(nullptr) {
-  std::string searched, reason = "not found";
-  for (const auto& folder : folders) {
-    const auto library = folder / "nepho_vdb_writer.so";
-    searched += (searched.empty() ? "" : ", ") + folder.string();
-    if (!std::filesystem::exists(library)) continue;
-    // never closed: OpenVDB and TBB keep global state
-    void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (handle) write_ = reinterpret_cast<vdb_write_fn*>(dlsym(handle, "nepho_vdb_write"));
-    if (write_) return;
-    reason = dlerror();
-  }
-  throw Error({"cannot write .vdb files", "nepho_vdb_writer.so", "the module in " + searched,
-               reason, "build with OpenVDB (package libopenvdb-dev)"});
-}
+VdbWriter::VdbWriter(const std::vector<std::filesystem::path>& folders)
+    : write_(load_writer(folders, "nepho_vdb_writer.so", ".vdb",
+                         "build with OpenVDB (package libopenvdb-dev)")
+                 .function<vdb_write_fn>("nepho_vdb_write")) {}
 
 void VdbWriter::write(const std::filesystem::path& path, const std::vector<SampleGrid>& grids,
                       const std::string& creator, bool write_statistics) const {

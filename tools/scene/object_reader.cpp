@@ -27,6 +27,8 @@ const char* expected_text(FieldKind kind) {
     case FieldKind::kObject:
     case FieldKind::kParameters:
       return "an object";
+    case FieldKind::kObjectOrNone:
+      return "an object, or \"none\"";
     case FieldKind::kObjectList:
       return "a list of objects";
   }
@@ -195,6 +197,9 @@ void ObjectReader::check(const JsonValue::Member& member) const {
     case FieldKind::kObject:  // its own reader checks the rest
     case FieldKind::kParameters:
       return must(value.kind == Kind::kObject);
+    case FieldKind::kObjectOrNone:
+      return must(value.kind == Kind::kObject ||
+                  (value.kind == Kind::kString && value.text == "none"));
     case FieldKind::kObjectList:
       return must(value.kind == Kind::kArray);
   }
@@ -232,8 +237,14 @@ std::vector<std::string> ObjectReader::texts(std::string_view field) const {
 
 std::optional<ObjectReader> ObjectReader::object(std::string_view field) const {
   const JsonValue* value = find(field);
-  if (!value) return std::nullopt;
+  if (!value || is_none(field)) return std::nullopt;
   return ObjectReader(*value, *grammar_of(field).object, source_name_, path_of(field));
+}
+
+bool ObjectReader::is_none(std::string_view field) const {
+  const JsonValue* value = find(field);
+  return value && value->kind == JsonValue::Kind::kString && value->text == "none" &&
+         grammar_of(field).kind == FieldKind::kObjectOrNone;
 }
 
 std::vector<ObjectReader> ObjectReader::objects(std::string_view field) const {

@@ -25,6 +25,7 @@ class ObjectReader {
   std::optional<glm::dvec3> vector(std::string_view field) const;
   std::vector<std::string> texts(std::string_view field) const;
   std::optional<ObjectReader> object(std::string_view field) const;
+  bool is_none(std::string_view field) const;  // the text "none" in place of an object
   std::vector<ObjectReader> objects(std::string_view field) const;
   const JsonValue* raw(std::string_view field) const { return find(field); }
 

@@ -9,6 +9,7 @@
 #include "geo/place.h"
 #include "scene/object_reader.h"
 #include "scene/parameter.h"
+#include "scene/utc.h"
 
 namespace nepho {
 namespace {
@@ -71,7 +72,9 @@ VolumeSpec read_volume(const ObjectReader& in, const std::filesystem::path& fold
   if (const auto place = in.object("place")) volume.place = read_place(*place);
   if (const auto phase = in.object("phase")) volume.phase = read_phase(*phase);
   volume.co_albedo = in.vector("co_albedo");
+  in.at_most_one({"time_s", "utc"});
   volume.time_s = in.number("time_s");
+  if (const auto utc = in.text("utc")) volume.utc_ns = utc_ns_value(*utc, in.where("utc"));
   volume.name = in.text("name").value_or(
       volume.files.empty() ? volume.source
                            : std::filesystem::path(volume.files.front()).stem().string());
@@ -87,6 +90,26 @@ std::optional<glm::dvec3> read_spot(const ObjectReader& in, const std::string& n
   return in.vector(name + "_ecef_m");
 }
 
+Stand read_stand(const ObjectReader& in) {
+  in.require("lat_deg");
+  in.require("lon_deg");
+  Stand stand;
+  stand.latitude_deg = *in.number("lat_deg");
+  stand.longitude_deg = *in.number("lon_deg");
+  stand.eye_height_m = in.number("eye_height_m").value_or(stand.eye_height_m);
+  stand.azimuth_deg = in.number("azimuth_deg");
+  stand.elevation_deg = in.number("elevation_deg");
+  return stand;
+}
+
+View read_view(const ObjectReader& in) {
+  const std::string word = in.text("view").value_or("auto");
+  return word == "oblique"  ? View::kOblique
+         : word == "globe"  ? View::kGlobe
+         : word == "ground" ? View::kGround
+                            : View::kAuto;
+}
+
 CameraSpec read_camera(const ObjectReader& in, const Placement& frame) {
   CameraSpec camera;
   camera.eye_m = read_spot(in, "look_from", frame);
@@ -94,6 +117,11 @@ CameraSpec read_camera(const ObjectReader& in, const Placement& frame) {
   if (camera.eye_m && camera.target_m && *camera.eye_m == *camera.target_m)
     throw Error(
         {"camera looks nowhere", in.where(), "look_from apart from look_at", "the same point", ""});
+  for (const char* point :
+       {"look_from_m", "look_from", "look_from_ecef_m", "look_at_m", "look_at", "look_at_ecef_m"})
+    in.at_most_one({point, "stand", "view"});
+  if (const auto stand = in.object("stand")) camera.stand = read_stand(*stand);
+  camera.view = read_view(in);
   if (in.has("up_ecef")) camera.up = read_direction(in, "up_ecef");
   in.at_most_one({"fov_deg", "fov_rad"});
   camera.vertical_fov_rad = in.number("fov_rad");
@@ -101,15 +129,21 @@ CameraSpec read_camera(const ObjectReader& in, const Placement& frame) {
   return camera;
 }
 
-SunSpec read_sun(const ObjectReader& in, const Placement& frame) {
+SunSpec read_sun(const ObjectReader& in, const Placement* frame) {
   SunSpec sun;
-  in.at_most_one({"azimuth_deg", "to_sun_ecef"});
-  in.at_most_one({"elevation_deg", "to_sun_ecef"});
+  in.at_most_one({"azimuth_deg", "to_sun_ecef", "utc"});
+  in.at_most_one({"elevation_deg", "to_sun_ecef", "utc"});
   in.all_or_none({"azimuth_deg", "elevation_deg"});
   if (in.has("to_sun_ecef")) sun.to_sun = read_direction(in, "to_sun_ecef");
+  if (const auto utc = in.text("utc")) sun.utc_ns = utc_ns_value(*utc, in.where("utc"));
   if (in.has("azimuth_deg"))
-    sun.to_sun = sun_direction(frame, glm::radians(*in.number("azimuth_deg")),
-                               glm::radians(*in.number("elevation_deg")));
+    sun.azimuth_elevation_deg = {*in.number("azimuth_deg"), *in.number("elevation_deg")};
+  // A scene that is nowhere yet: where the camera will look, its angles are laid out.
+  if (frame && sun.azimuth_elevation_deg) {
+    const glm::dvec2 angles_rad = glm::radians(*sun.azimuth_elevation_deg);
+    sun.to_sun = sun_direction(*frame, angles_rad.x, angles_rad.y);
+    sun.azimuth_elevation_deg.reset();
+  }
   sun.irradiance_W_per_m2_nm = in.vector("irradiance_W_per_m2_nm");
   return sun;
 }
@@ -124,6 +158,52 @@ Sky read_sky(const ObjectReader& in, const Placement& frame) {
   sky.horizon_W_per_m2_sr_nm = *in.vector("horizon_W_per_m2_sr_nm");
   sky.below_W_per_m2_sr_nm = *in.vector("below_W_per_m2_sr_nm");
   return sky;
+}
+
+Air read_air(const ObjectReader& in) {
+  Air air;
+  const auto take = [&](const char* field, double& value) {
+    value = in.number(field).value_or(value);
+  };
+  air.rayleigh_per_m = in.vector("rayleigh_per_m").value_or(air.rayleigh_per_m);
+  take("rayleigh_scale_m", air.rayleigh_scale_m);
+  air.aerosol_extinction_per_m =
+      in.vector("aerosol_extinction_per_m").value_or(air.aerosol_extinction_per_m);
+  take("aerosol_albedo", air.aerosol_albedo);
+  take("aerosol_asymmetry", air.aerosol_asymmetry);
+  take("aerosol_scale_m", air.aerosol_scale_m);
+  air.ozone_per_m = in.vector("ozone_per_m").value_or(air.ozone_per_m);
+  take("ozone_low_m", air.ozone_low_m);
+  take("ozone_peak_m", air.ozone_peak_m);
+  take("ozone_high_m", air.ozone_high_m);
+  take("top_m", air.top_m);
+  if (!(air.ozone_low_m < air.ozone_peak_m && air.ozone_peak_m < air.ozone_high_m))
+    throw Error({"not a tent", in.where(), "ozone_low_m < ozone_peak_m < ozone_high_m",
+                 std::to_string(air.ozone_low_m) + ", " + std::to_string(air.ozone_peak_m) + ", " +
+                     std::to_string(air.ozone_high_m),
+                 ""});
+  return air;
+}
+
+Planet read_planet(const ObjectReader& in) {
+  Planet planet;
+  in.at_most_one({"radius_m", "equatorial_m"});
+  in.at_most_one({"radius_m", "polar_m"});
+  in.all_or_none({"equatorial_m", "polar_m"});
+  if (const auto radius_m = in.number("radius_m")) planet.body = Ellipsoid::sphere(*radius_m);
+  if (in.has("polar_m")) planet.body = {*in.number("equatorial_m"), *in.number("polar_m")};
+  if (std::abs(planet.body.polar_m / planet.body.equatorial_m - 1) > 0.1)
+    throw Error({"not a planet's shape", in.where("polar_m"), "within 10 % of equatorial_m",
+                 std::to_string(planet.body.polar_m), ""});
+  if (in.is_none("air")) planet.air.reset();
+  if (const auto air = in.object("air")) planet.air = read_air(*air);
+  if (const auto ground = in.object("ground")) {
+    GroundLook& look = planet.ground;
+    look.land_albedo = ground->vector("land_albedo").value_or(look.land_albedo);
+    look.water_albedo = ground->vector("water_albedo").value_or(look.water_albedo);
+    look.wind_m_per_s = ground->number("wind_m_per_s").value_or(look.wind_m_per_s);
+  }
+  return planet;
 }
 
 void read_render(const ObjectReader& in, RenderSettings& settings) {
@@ -145,11 +225,11 @@ void read_render(const ObjectReader& in, RenderSettings& settings) {
 // Where the camera looks, for scenes on a globe that give no place of their own.
 std::optional<GeodeticPlace> camera_point(const ObjectReader& in) {
   if (const auto camera = in.object("camera"))
-    for (const std::string_view field : {"look_at", "look_from"})
+    for (const std::string_view field : {"look_at", "look_from", "stand"})
       if (const auto point = camera->object(field)) {
-        GeodeticPlace place = read_point(*point);
-        place.height_m = 0;
-        return place;
+        point->require("lat_deg");
+        point->require("lon_deg");
+        return GeodeticPlace{*point->number("lat_deg"), *point->number("lon_deg"), 0, 0};
       }
   return std::nullopt;
 }
@@ -172,8 +252,12 @@ Scene parse_scene(std::string_view text, const std::string& source_name,
 
   const Placement frame = scene_frame(scene);
   if (const auto camera = in.object("camera")) scene.camera = read_camera(*camera, frame);
-  if (const auto sun = in.object("sun")) scene.sun = read_sun(*sun, frame);
+  if (const auto sun = in.object("sun"))
+    scene.sun = read_sun(*sun, has_frame(scene) ? &frame : nullptr);
   if (const auto sky = in.object("sky")) scene.sky = read_sky(*sky, frame);
+  scene.no_planet = in.is_none("planet");
+  if (!scene.no_planet) in.at_most_one({"sky", "planet"});
+  if (const auto planet = in.object("planet")) scene.planet = read_planet(*planet);
   if (const auto image = in.object("image")) {
     scene.render.width = image->integer("width").value_or(scene.render.width);
     scene.render.height = image->integer("height").value_or(scene.render.height);
@@ -204,6 +288,10 @@ Scene read_scene_file(const std::filesystem::path& path) {
   std::ostringstream text;
   text << in.rdbuf();
   return parse_scene(text.str(), path.string(), std::filesystem::absolute(path).parent_path());
+}
+
+bool has_frame(const Scene& scene) {
+  return scene.place || (!scene.volumes.empty() && scene.volumes.front().place);
 }
 
 Placement scene_frame(const Scene& scene) {

@@ -22,6 +22,8 @@ Scene read_scene_file(const std::filesystem::path& path);
 // it, so that a picture and its data can move together; others become absolute.
 std::string write_scene(const Scene& scene, const std::filesystem::path& folder);
 
+// Whether a scene says where it stands; without, its frame is that of the world.
+bool has_frame(const Scene& scene);
 // The frame of local points, for a scene that has been read.
 Placement scene_frame(const Scene& scene);
 glm::dvec3 to_ecef(const Placement& frame, const glm::dvec3& local_m);

@@ -39,22 +39,35 @@ constexpr FieldGrammar kVolumeFields[] = {
     {"phase", kObject, 0, 0, {}, &kPhase},
     {"co_albedo", kVector, 0, 1},
     {"time_s", kNumber},
+    {"utc", kText},
 };
 constexpr ObjectGrammar kVolume{"volume", kVolumeFields};
 
+constexpr FieldGrammar kStandFields[] = {
+    {"lat_deg", kNumber, -90, 90},        {"lon_deg", kNumber, -360, 360},
+    {"azimuth_deg", kNumber, -360, 360},  {"elevation_deg", kNumber, -90, 90},
+    {"eye_height_m", kNumber, 0.01, 1e5},
+};
+constexpr ObjectGrammar kStand{"stand", kStandFields};
+
 constexpr FieldGrammar kCameraFields[] = {
-    {"look_from_m", kVector, -1e12, 1e12},      {"look_from", kObject, 0, 0, {}, &kPoint},
-    {"look_from_ecef_m", kVector, -1e12, 1e12}, {"look_at_m", kVector, -1e12, 1e12},
-    {"look_at", kObject, 0, 0, {}, &kPoint},    {"look_at_ecef_m", kVector, -1e12, 1e12},
-    {"up_ecef", kVector, -kHuge, kHuge},        {"fov_deg", kNumber, 1e-6, 170},
+    {"look_from_m", kVector, -1e12, 1e12},
+    {"look_from", kObject, 0, 0, {}, &kPoint},
+    {"look_from_ecef_m", kVector, -1e12, 1e12},
+    {"look_at_m", kVector, -1e12, 1e12},
+    {"look_at", kObject, 0, 0, {}, &kPoint},
+    {"look_at_ecef_m", kVector, -1e12, 1e12},
+    {"up_ecef", kVector, -kHuge, kHuge},
+    {"fov_deg", kNumber, 1e-6, 170},
     {"fov_rad", kNumber, 1e-8, 2.967},
+    {"stand", kObject, 0, 0, {}, &kStand},
+    {"view", kChoice, 0, 0, "auto|oblique|globe|ground"},
 };
 constexpr ObjectGrammar kCamera{"camera", kCameraFields};
 
 constexpr FieldGrammar kSunFields[] = {
-    {"azimuth_deg", kNumber, -360, 360},
-    {"elevation_deg", kNumber, -90, 90},
-    {"to_sun_ecef", kVector, -kHuge, kHuge},
+    {"azimuth_deg", kNumber, -360, 360},          {"elevation_deg", kNumber, -90, 90},
+    {"to_sun_ecef", kVector, -kHuge, kHuge},      {"utc", kText},
     {"irradiance_W_per_m2_nm", kVector, 0, 1e12},
 };
 constexpr ObjectGrammar kSun{"sun", kSunFields};
@@ -66,6 +79,35 @@ constexpr FieldGrammar kSkyFields[] = {
     {"up_ecef", kVector, -kHuge, kHuge},
 };
 constexpr ObjectGrammar kSky{"sky", kSkyFields};
+
+constexpr FieldGrammar kAirFields[] = {
+    {"rayleigh_per_m", kVector, 0, 1},
+    {"rayleigh_scale_m", kNumber, 1, 1e6},
+    {"aerosol_extinction_per_m", kVector, 0, 1},
+    {"aerosol_albedo", kNumber, 0, 1},
+    {"aerosol_asymmetry", kNumber, -0.9999, 0.9999},
+    {"aerosol_scale_m", kNumber, 1, 1e6},
+    {"ozone_per_m", kVector, 0, 1},
+    {"ozone_low_m", kNumber, 0, 1e6},
+    {"ozone_peak_m", kNumber, 0, 1e6},
+    {"ozone_high_m", kNumber, 0, 1e6},
+    {"top_m", kNumber, 100, 1e6},
+};
+constexpr ObjectGrammar kAir{"air", kAirFields};
+
+constexpr FieldGrammar kGroundFields[] = {
+    {"land_albedo", kVector, 0, 1},
+    {"water_albedo", kVector, 0, 1},
+    {"wind_m_per_s", kNumber, 0, 100},
+};
+constexpr ObjectGrammar kGround{"ground", kGroundFields};
+
+constexpr FieldGrammar kPlanetFields[] = {
+    {"radius_m", kNumber, 1e4, 1e10},        {"equatorial_m", kNumber, 1e4, 1e10},
+    {"polar_m", kNumber, 1e4, 1e10},         {"air", kObjectOrNone, 0, 0, {}, &kAir},
+    {"ground", kObject, 0, 0, {}, &kGround},
+};
+constexpr ObjectGrammar kPlanet{"planet", kPlanetFields};
 
 constexpr FieldGrammar kImageFields[] = {
     {"width", kInteger, 1, kLargestImageSide},
@@ -94,6 +136,7 @@ constexpr FieldGrammar kSceneFields[] = {
     {"camera", kObject, 0, 0, {}, &kCamera},
     {"sun", kObject, 0, 0, {}, &kSun},
     {"sky", kObject, 0, 0, {}, &kSky},
+    {"planet", kObjectOrNone, 0, 0, {}, &kPlanet},
     {"image", kObject, 0, 0, {}, &kImage},
     {"render", kObject, 0, 0, {}, &kRender},
     {"exposure_ev", kNumber, -60, 60},

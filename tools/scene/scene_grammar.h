@@ -11,14 +11,15 @@ namespace nepho {
 
 enum class FieldKind {
   kText,
-  kChoice,      // one of `choices`
-  kNumber,      // within [low, high]
-  kInteger,     // the same
-  kVector,      // three numbers within [low, high]
-  kTextList,    // one text, or a list of them
-  kObject,      // `object`
-  kObjectList,  // a list of `object`
-  kParameters,  // free names: the source module knows them
+  kChoice,        // one of `choices`
+  kNumber,        // within [low, high]
+  kInteger,       // the same
+  kVector,        // three numbers within [low, high]
+  kTextList,      // one text, or a list of them
+  kObject,        // `object`
+  kObjectOrNone,  // `object`, or the text "none"
+  kObjectList,    // a list of `object`
+  kParameters,    // free names: the source module knows them
 };
 
 struct ObjectGrammar;

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/scene_file.h"
+#include "scene/utc.h"
 
 namespace nepho {
 namespace {
@@ -47,6 +48,7 @@ Json write_volume(const VolumeSpec& volume, const std::filesystem::path& folder)
     out["phase"] = {{"kind", "henyey_greenstein"}, {"asymmetry", volume.phase->asymmetry}};
   if (volume.co_albedo) out["co_albedo"] = vector(*volume.co_albedo);
   if (volume.time_s) out["time_s"] = *volume.time_s;
+  if (volume.utc_ns) out["utc"] = utc_text(*volume.utc_ns);
   return out;
 }
 
@@ -56,6 +58,53 @@ Json write_camera(const CameraSpec& camera) {
   if (camera.target_m) out["look_at_ecef_m"] = vector(*camera.target_m);
   if (camera.up) out["up_ecef"] = vector(*camera.up);
   if (camera.vertical_fov_rad) out["fov_rad"] = *camera.vertical_fov_rad;
+  if (camera.stand) {
+    Json& stand = out["stand"];
+    stand = {{"lat_deg", camera.stand->latitude_deg},
+             {"lon_deg", camera.stand->longitude_deg},
+             {"eye_height_m", camera.stand->eye_height_m}};
+    if (camera.stand->azimuth_deg) stand["azimuth_deg"] = *camera.stand->azimuth_deg;
+    if (camera.stand->elevation_deg) stand["elevation_deg"] = *camera.stand->elevation_deg;
+  }
+  if (camera.view == View::kOblique) out["view"] = "oblique";
+  if (camera.view == View::kGlobe) out["view"] = "globe";
+  if (camera.view == View::kGround) out["view"] = "ground";
+  return out;
+}
+
+Json write_sun(const SunSpec& sun) {
+  Json out = Json::object();
+  if (sun.to_sun) out["to_sun_ecef"] = vector(*sun.to_sun);
+  if (sun.utc_ns) out["utc"] = utc_text(*sun.utc_ns);
+  if (sun.azimuth_elevation_deg) {
+    out["azimuth_deg"] = sun.azimuth_elevation_deg->x;
+    out["elevation_deg"] = sun.azimuth_elevation_deg->y;
+  }
+  if (sun.irradiance_W_per_m2_nm)
+    out["irradiance_W_per_m2_nm"] = vector(*sun.irradiance_W_per_m2_nm);
+  return out;
+}
+
+Json write_air(const Air& air) {
+  return {{"rayleigh_per_m", vector(air.rayleigh_per_m)},
+          {"rayleigh_scale_m", air.rayleigh_scale_m},
+          {"aerosol_extinction_per_m", vector(air.aerosol_extinction_per_m)},
+          {"aerosol_albedo", air.aerosol_albedo},
+          {"aerosol_asymmetry", air.aerosol_asymmetry},
+          {"aerosol_scale_m", air.aerosol_scale_m},
+          {"ozone_per_m", vector(air.ozone_per_m)},
+          {"ozone_low_m", air.ozone_low_m},
+          {"ozone_peak_m", air.ozone_peak_m},
+          {"ozone_high_m", air.ozone_high_m},
+          {"top_m", air.top_m}};
+}
+
+Json write_planet(const Planet& planet) {
+  Json out{{"equatorial_m", planet.body.equatorial_m}, {"polar_m", planet.body.polar_m}};
+  out["air"] = planet.air ? write_air(*planet.air) : Json("none");
+  out["ground"] = {{"land_albedo", vector(planet.ground.land_albedo)},
+                   {"water_albedo", vector(planet.ground.water_albedo)},
+                   {"wind_m_per_s", planet.ground.wind_m_per_s}};
   return out;
 }
 
@@ -84,15 +133,16 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
   for (const VolumeSpec& volume : scene.volumes)
     out["volumes"].push_back(write_volume(volume, folder));
   out["camera"] = write_camera(scene.camera);
-  out["sun"] = Json::object();
-  if (scene.sun.to_sun) out["sun"]["to_sun_ecef"] = vector(*scene.sun.to_sun);
-  if (scene.sun.irradiance_W_per_m2_nm)
-    out["sun"]["irradiance_W_per_m2_nm"] = vector(*scene.sun.irradiance_W_per_m2_nm);
+  out["sun"] = write_sun(scene.sun);
   if (scene.sky)
     out["sky"] = {{"zenith_W_per_m2_sr_nm", vector(scene.sky->zenith_W_per_m2_sr_nm)},
                   {"horizon_W_per_m2_sr_nm", vector(scene.sky->horizon_W_per_m2_sr_nm)},
                   {"below_W_per_m2_sr_nm", vector(scene.sky->below_W_per_m2_sr_nm)},
                   {"up_ecef", vector(scene.sky->up)}};
+  if (scene.no_planet)
+    out["planet"] = "none";
+  else if (scene.planet)
+    out["planet"] = write_planet(*scene.planet);
   out["image"] = {{"width", scene.render.width}, {"height", scene.render.height}};
   out["render"] = write_render(scene.render);
   if (scene.exposure_ev) out["exposure_ev"] = *scene.exposure_ev;

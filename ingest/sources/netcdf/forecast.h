@@ -53,8 +53,8 @@ class Forecast {
   virtual std::shared_ptr<const HorizontalGrid> grid(std::size_t time) const = 0;
   virtual ForecastColumns columns(std::size_t time) const = 0;
   virtual ForecastGround ground(std::size_t time) const = 0;
-  // Lowest and highest interface over all times, and the thinnest layer in which there can be
-  // cloud, without reading the condensate.
+  // Lowest and highest interface over all times, and the thickness of the thin layers
+  // that hold cloud: a tenth of all optical depth is in thinner ones.
   virtual glm::dvec2 height_range_m() const = 0;
   virtual double thinnest_layer_m() const = 0;
   // Mean effective radius of the liquid part (m), weighted by extinction: the volume's phase.

@@ -17,7 +17,7 @@ Options parse_options(const SourceRequest& request) {
   options.grid = parameters.word("grid", "");
   options.density_scale_per_m = parameters.positive("density_scale");
   options.metres_per_unit = parameters.positive("metres_per_unit");
-  options.frames_per_second = parameters.positive("fps", options.frames_per_second);
+  options.frames_per_second = parameters.positive("fps");
   const std::string up = parameters.choice("up", {"auto", "y", "z"});
   if (up != "auto") options.up = up == "y" ? UpAxis::kY : UpAxis::kZ;
   if (parameters.number("frame")) options.frame = parameters.integer("frame", 0, 0, 1000000000);

@@ -17,7 +17,7 @@ struct Options {
   std::optional<UpAxis> up;                   // y, z or auto
   std::optional<double> metres_per_unit;
   std::optional<long> frame;
-  double frames_per_second = 24;
+  std::optional<double> frames_per_second;  // 24
 };
 
 // Throws Error on an unknown name, a wrong type or a value out of range.

@@ -1,5 +1,6 @@
 #include "vdb_container.h"
 
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -75,12 +76,15 @@ std::int64_t checked_size(const std::string& file) {
   return std::int64_t(size);
 }
 
+[[noreturn]] void refuse_nano(const std::string& file) {
+  throw Error({"NanoVDB is not read", file, "an OpenVDB file (.vdb)", "a NanoVDB file",
+               "convert it with nanovdb_convert to .vdb"});
+}
+
 void check_magic(const std::string& file, Cursor& in) {
   char first[8] = {};
   for (char& c : first) c = in.number<char>("magic number");
-  if (std::memcmp(first, "NanoVDB", 7) == 0)
-    throw Error({"NanoVDB is not read", file, "an OpenVDB file", "a NanoVDB file",
-                 "convert it with nanovdb_convert"});
+  if (std::memcmp(first, "NanoVDB", 7) == 0) refuse_nano(file);
   if (std::memcmp(first, &kMagic, 8) != 0)
     throw Error(
         {"not a VDB file", file, "the magic number 20 42 44 56", "another kind of file", ""});
@@ -116,6 +120,9 @@ void check_grid(Cursor& in, std::uint32_t version) {
 
 void check_container(const std::string& file) {
   const std::int64_t size = checked_size(file);
+  std::string ending = std::filesystem::path(file).extension().string();
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  if (ending == ".nvdb") refuse_nano(file);
   Cursor in(file, size);
   check_magic(file, in);
   const auto version = in.number<std::uint32_t>("file version");

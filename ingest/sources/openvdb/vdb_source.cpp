@@ -11,7 +11,8 @@
 namespace nepho::vdb {
 namespace {
 
-constexpr double kMeanOpticalDepth = 10;        // of the default density scale
+constexpr double kMeanOpticalDepth = 10;  // of the default density scale
+constexpr double kFramesPerSecond = 24;
 constexpr double kMostExtinction_per_m = 1e30;  // codes are scaled by floats
 
 std::string text(double value) {
@@ -140,6 +141,10 @@ void VdbSource::choose_frames() {
   const std::vector<Frame>& all = layout_.sequence.frames;
   const long first = all.front().number;
   shown_ = all;
+  if (options_.frames_per_second && !layout_.sequence.is_pattern)
+    throw Error({"frames per second of what is no sequence", options_.file,
+                 "a pattern such as smoke.####.vdb", "fps " + text(*options_.frames_per_second),
+                 ""});
   if (options_.frame) {
     const long wanted = *options_.frame;
     if (!layout_.sequence.is_pattern)
@@ -156,7 +161,8 @@ void VdbSource::choose_frames() {
   }
   info_.times_s.clear();
   for (const Frame& frame : shown_)
-    info_.times_s.push_back(double(frame.number - first) / options_.frames_per_second);
+    info_.times_s.push_back(double(frame.number - first) /
+                            options_.frames_per_second.value_or(kFramesPerSecond));
 }
 
 double VdbSource::choose_scale(const VdbGrid* grid) {

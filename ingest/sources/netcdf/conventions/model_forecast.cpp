@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -227,17 +228,35 @@ void ModelForecast::say(const WaterStatistics& s) {
                     " water values have no pressure or temperature: no cloud there.");
 }
 
+// The thickness that a tenth of all optical depth is below; of all layers alike without cloud.
+double thinnest_cloudy_layer_m(const ForecastColumns& columns) {
+  std::map<int, double> depth;  // by thickness in steps of 1 %
+  const auto nz = std::size_t(columns.nz);
+  double total = 0;
+  for (std::size_t cell = 0; nz > 0 && cell * nz < columns.extinction_per_m.size(); ++cell)
+    for (std::size_t k = 0; k < nz; ++k) {
+      const float* z = &columns.interface_m[cell * (nz + 1) + k];
+      const double thick_m = double(z[1]) - double(z[0]);
+      const double weight =
+          std::max(double(columns.extinction_per_m[cell * nz + k]) * thick_m, 1e-12);
+      depth[int(std::lround(std::log(thick_m) * 100))] += weight;
+      total += weight;
+    }
+  double below = 0;
+  for (const auto& [step, weight] : depth)
+    if ((below += weight) >= 0.1 * total) return std::exp(step / 100.0);
+  return 1;
+}
+
 // Each time's lowest and highest interface, and the thinnest layer of the first time with water.
 void ModelForecast::measure_heights() {
   const ForecastColumns& columns = first_->columns;
   const std::vector<float>& z = columns.interface_m;
   const std::size_t nz = std::size_t(columns.nz), cells = z.size() / (nz + 1);
-  double low = 1e30, high = -1e30, thinnest = 1e30;
+  double low = 1e30, high = -1e30;
   for (std::size_t n = 0; n < cells; ++n) {
     low = std::min(low, double(z[n * (nz + 1)]));
     high = std::max(high, double(z[n * (nz + 1) + nz]));
-    for (std::size_t k = 0; k < nz; ++k)
-      thinnest = std::min(thinnest, double(z[n * (nz + 1) + k + 1]) - double(z[n * (nz + 1) + k]));
   }
   for (std::size_t time = 0; model_.heights_change && time < index_.size(); ++time) {
     if (time == first_->time) continue;
@@ -254,7 +273,7 @@ void ModelForecast::measure_heights() {
     }
   }
   height_range_m_ = {low, high};
-  thinnest_m_ = thinnest;
+  thinnest_m_ = thinnest_cloudy_layer_m(columns);
   if (high < kWholeTroposphere_m)
     model_.facts.push_back(
         text("The data end at %.1f km: clouds that reach higher are cut off flat.", high * 1e-3));

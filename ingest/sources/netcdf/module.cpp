@@ -1,0 +1,32 @@
+#include "api/module_support.h"
+#include "sources/netcdf/conventions/convention.h"
+#include "sources/netcdf/netcdf_source.h"
+
+namespace nepho::netcdf {
+namespace {
+
+// Parameters beside those of make_source():
+//   force   1 draws what is out of every cloud's range, and is else refused (0)
+std::unique_ptr<BrickSource> open_source(const SourceRequest& request) {
+  const std::string name = request.volume_name ? request.volume_name : "";
+  if (request.file_count == 0)
+    throw Error({"a netcdf volume without a file", "volume '" + name + "'",
+                 "one file, or several that hold times of one forecast", "none", ""});
+  Parameters parameters(request);
+  OpenRequest open;
+  open.files.assign(request.files, request.files + request.file_count);
+  open.io_lock = request.io_lock;
+  open.force = parameters.integer("force", 0, 0, 1) == 1;
+  return make_source(name, open_forecast(open), parameters);
+}
+
+}  // namespace
+}  // namespace nepho::netcdf
+
+extern "C" __attribute__((visibility("default"))) const nepho::SourceModule* nepho_source_module() {
+  static const nepho::SourceModule module = {
+      nepho::this_abi(), [](const nepho::SourceRequest* request, nepho::ModuleError* error) {
+        return nepho::open_guarded(error, [&] { return nepho::netcdf::open_source(*request); });
+      }};
+  return &module;
+}

@@ -1,0 +1,156 @@
+#include "gl/planet_passes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+extern const char* const nepho_shader_ground;
+extern const char* const nepho_shader_sun_map;
+
+namespace nepho::gl {
+namespace {
+
+constexpr int kBlock = 128;  // pixels on a side of a dispatch
+constexpr GLuint kPlanetBinding = 7;
+constexpr GLuint kDepthUnit = 3, kLightUnit = 4, kSunMapUnit = 5, kSurfaceUnit = 6;
+
+void set_filter(GLuint id, GLenum filter) {
+  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GLint(filter));
+  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GLint(filter));
+  glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+Texture make_texture_2d(int width, int height, GLenum format, GLenum filter) {
+  GLuint id = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &id);
+  Texture texture(id);
+  glTextureStorage2D(id, 1, format, width, height);
+  set_filter(id, filter);
+  return texture;
+}
+
+void dispatch_blocks(const Program& program, int width, int height) {
+  glUseProgram(program.id());
+  const GLint first = glGetUniformLocation(program.id(), "first_pixel");
+  for (int y = 0; y < height; y += kBlock)
+    for (int x = 0; x < width; x += kBlock) {
+      const int w = std::min(kBlock, width - x), h = std::min(kBlock, height - y);
+      glUniform2i(first, x, y);
+      glDispatchCompute(GLuint((w + 7) / 8), GLuint((h + 7) / 8), 1);
+    }
+}
+
+std::string percent(double part) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g %%", 100 * part);
+  return text;
+}
+
+}  // namespace
+
+PlanetPasses::PlanetPasses(const RenderRequest& request, const Forest& forest)
+    : request_(request), scene_(make_planet_scene(request, forest)) {}
+
+std::string PlanetPasses::defines() const {
+  std::string text = "#define NEPHO_GROUND 1\n";
+  if (scene_.air) text += "#define NEPHO_AIR 1\n";
+  if (scene_.terrain) text += "#define NEPHO_TERRAIN 1\n";
+  if (scene_.sun_map) text += "#define NEPHO_SUN_MAP 1\n";
+  if (scene_.clouds) text += "#define NEPHO_CLOUDS 1\n";
+  return text;
+}
+
+// Of what the surface map shows; of water where there is none.
+glm::dvec3 PlanetPasses::mean_albedo() const {
+  const GroundLook& look = request_.planet->ground;
+  if (!scene_.terrain) return look.water_albedo;
+  double water = 0;
+  for (const float w : scene_.surface->water)
+    water += double(w) / double(scene_.surface->water.size());
+  return glm::mix(look.land_albedo, look.water_albedo, water);
+}
+
+void PlanetPasses::upload() {
+  data_ = Buffer(&scene_.data, sizeof(PlanetData));
+  data_.bind(kPlanetBinding);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  if (scene_.air) {
+    const Planet& planet = *request_.planet;
+    const AirTables tables = make_air_tables(*planet.air, planet.body.equatorial_m, mean_albedo());
+    // Float: twilight is below what half floats hold, and filters of half floats are no faster.
+    depth_ = make_texture_2d(tables.depth.width, tables.depth.height, GL_RGBA32F, GL_LINEAR);
+    glTextureSubImage2D(depth_.id(), 0, 0, 0, tables.depth.width, tables.depth.height, GL_RGB,
+                        GL_FLOAT, tables.depth.rgb.data());
+    const std::array<const AirTable*, 6> layers = {&tables.multiple, &tables.multiple_p2,
+                                                   &tables.sky_up,   &tables.sky_side,
+                                                   &tables.sky_down, &tables.sky_low};
+    const int width = layers[0]->width, height = layers[0]->height;
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
+    light_ = Texture(id);
+    glTextureStorage3D(id, 1, GL_RGBA32F, width, height, GLsizei(layers.size()));
+    set_filter(id, GL_LINEAR);
+    for (std::size_t layer = 0; layer < layers.size(); ++layer)
+      glTextureSubImage3D(id, 0, 0, 0, GLint(layer), width, height, 1, GL_RGB, GL_FLOAT,
+                          layers[layer]->rgb.data());
+    table_bytes_ = 16 * (std::uint64_t(tables.depth.width) * std::uint64_t(tables.depth.height) +
+                         layers.size() * std::uint64_t(width) * std::uint64_t(height));
+    glBindTextureUnit(kDepthUnit, depth_.id());
+    glBindTextureUnit(kLightUnit, light_.id());
+  }
+  if (scene_.terrain) {
+    const SurfaceMap& map = *scene_.surface;
+    std::vector<float> texels;
+    texels.reserve(2 * map.height_m.size());
+    for (std::size_t i = 0; i < map.height_m.size(); ++i) {
+      texels.push_back(map.height_m[i]);
+      texels.push_back(map.water[i]);
+    }
+    surface_ = make_texture_2d(map.nx, map.ny, GL_RG32F, GL_NEAREST);
+    glTextureSubImage2D(surface_.id(), 0, 0, 0, map.nx, map.ny, GL_RG, GL_FLOAT, texels.data());
+    surface_bytes_ = 4 * texels.size();
+    glBindTextureUnit(kSurfaceUnit, surface_.id());
+  }
+  const int width = request_.settings.width, height = request_.settings.height;
+  met_ = make_texture_2d(width, height, GL_RGBA32F, GL_NEAREST);
+  met_bytes_ = 16 * std::uint64_t(width) * std::uint64_t(height);
+  check_errors("upload of the planet");
+}
+
+void PlanetPasses::draw_sun_map(const std::string& switches) {
+  const int size = scene_.map_size;
+  sun_map_ = make_texture_2d(size, size, GL_RGBA32F, GL_LINEAR);
+  map_bytes_ = 16 * std::uint64_t(size) * std::uint64_t(size);
+  glBindImageTexture(0, sun_map_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  dispatch_blocks(compile("sun_map", nepho_shader_sun_map, switches), size, size);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  glBindTextureUnit(kSunMapUnit, sun_map_.id());
+}
+
+void PlanetPasses::bind_view() const {
+  glBindImageTexture(1, met_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+}
+
+void PlanetPasses::draw_ground(GLuint picture, const std::string& switches) {
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  glBindImageTexture(0, picture, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+  glBindImageTexture(1, met_.id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
+  dispatch_blocks(compile("ground", nepho_shader_ground, switches), request_.settings.width,
+                  request_.settings.height);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void PlanetPasses::add_to(RenderReport& report) const {
+  report.planet_bytes = sizeof(PlanetData) + table_bytes_ + surface_bytes_ + map_bytes_;
+  report.image_bytes += met_bytes_;
+  if (!scene_.air) report.left_out.push_back("air: the planet has none");
+  if (!scene_.terrain)
+    report.left_out.push_back("terrain: no volume has a ground of its own; all is sea level water");
+  if (scene_.air && !scene_.sun_map)
+    report.left_out.push_back("clouds' shadows on the air: predicted to change less than " +
+                              percent(scene_.sun_map_change) + " of its light");
+}
+
+}  // namespace nepho::gl

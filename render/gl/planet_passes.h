@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "gl/object.h"
+#include "gl/planet_data.h"
+
+namespace nepho::gl {
+
+// A planet's textures, buffer and passes. Made only where a scene has one.
+class PlanetPasses {
+ public:
+  PlanetPasses(const RenderRequest& request, const Forest& forest);
+
+  // Lines of #define for all passes.
+  std::string defines() const;
+  const PlanetScene& scene() const { return scene_; }
+  void upload();
+  // What the clouds leave of the sun, for the air; `switches` as for the light passes.
+  void draw_sun_map(const std::string& switches);
+  // Binds what the view pass writes for the ground.
+  void bind_view() const;
+  void draw_ground(GLuint picture, const std::string& switches);
+  void add_to(RenderReport& report) const;
+
+ private:
+  glm::dvec3 mean_albedo() const;
+
+  const RenderRequest& request_;
+  PlanetScene scene_;
+  Buffer data_;
+  Texture depth_, light_, surface_, sun_map_, met_;
+  std::uint64_t table_bytes_ = 0, surface_bytes_ = 0, map_bytes_ = 0, met_bytes_ = 0;
+};
+
+}  // namespace nepho::gl

@@ -1,0 +1,75 @@
+// The view ray over a planet: clouds within spans of air, to the ground.
+
+Seen see(out float ground_m) {
+  Seen seen = Seen(vec3(0.0), vec3(1.0), 0.0);
+  ground_m = FAR;
+  if (!begin_planet_ray()) return seen;
+  ground_m = surface_distance();
+#ifdef NEPHO_SUN_MAP
+  begin_sun_map();
+#endif
+#define NEPHO_DO(v) walks[v] = begin_walk(v);
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
+#ifdef NEPHO_AIR
+  begin_air(ground_m);
+#endif
+  begin_lights();
+  float last_m = min(ground_m, FAR);
+  // Accounted for up to t; no cloud before `clear`.
+  float t = 0.0, clear = 0.0;
+  int ended = 0;
+  // Loops within one: llvmpipe runs what is in branches at every turn, and a span of air costs more
+  // than a leaf.
+  while (ended == 0) {
+    bool empty = true, smooth_ = true;
+    float leave = FAR;
+    int looking = 1;
+    while (looking == 1) {
+      leave = settle_walks(clear, empty, smooth_);
+      empty = empty || leave >= FAR;
+      if (empty) clear = min(leave, last_m);
+      if (!empty || clear >= last_m) looking = 0;
+    }
+#ifdef NEPHO_AIR
+    while ((t < clear || t >= span.end_m) && t < last_m && passed(seen) >= frame.least_transmittance) {
+      if (t >= span.end_m) next_span();
+      float next = min(span.end_m, clear);
+      add_air(seen, t, next);
+      t = next;
+    }
+    float span_end = span.end_m;
+#else
+    t = clear;
+    float span_end = FAR;
+#endif
+    if (!empty && t < last_m && passed(seen) >= frame.least_transmittance) {
+      float stop = min(min(leave, span_end), last_m);
+#if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
+      begin_sky_light(t, stop);
+#endif
+      vec3 s0 = total_source_at(t);
+      march_segment(seen, t, stop, smooth_, s0);
+      t = clear = stop;
+    }
+    if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
+  }
+  count_overrun(ended);
+  return seen;
+}
+
+// Where the ray meets no ground: the night sky, and the sun's disc, whose edge is a pixel wide.
+void add_sky_beyond(inout Seen seen) {
+  const float radius_rad = 0.004675;
+  vec3 apart = vec3(vec_of(frame.to_sun) - ray_direction);
+  float angle = 2.0 * arc_tangent(0.5 * length(apart), sqrt(max(1.0 - 0.25 * dot(apart, apart), 0.0)));
+  float width = max(planet.pixel_rad, 1e-5);
+  float part = clamp((radius_rad - angle) / width + 0.5, 0.0, 1.0);
+  // A pixel wider than the disc holds no more light than the disc.
+  part *= min(1.0, pi * radius_rad * radius_rad / (width * width));
+  float beyond = part / (pi * radius_rad * radius_rad);
+#ifdef NEPHO_AIR
+  beyond += night_sky;
+#endif
+  seen.radiance += seen.transmittance * beyond * vec_of(frame.sun_irradiance);
+}

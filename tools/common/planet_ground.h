@@ -1,0 +1,31 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "bricks/shell_chart.h"
+#include "bricks/surface_map.h"
+#include "common/framing.h"
+
+namespace nepho {
+
+// Where a planet's surface is, for eyes that must not be below it.
+struct PlanetGround {
+  Ellipsoid body = Ellipsoid::wgs84();
+  std::vector<std::shared_ptr<const SurfaceMap>>
+      maps;  // the first that reaches a point rules there
+
+  // Over the ellipsoid, below or above `ecef_m`; 0 outside all maps.
+  double height_m(const glm::dvec3& ecef_m) const;
+  // The point of the ellipsoid under a direction from the centre, raised by `height_m`.
+  glm::dvec3 point_m(const glm::dvec3& direction, double height_m) const;
+  // East, north and the ellipsoid's normal; at a pole, east is +y.
+  LocalAxes axes(const glm::dvec3& ecef_m) const;
+};
+
+// Height of the ground in a map's grid, by its bilinear rule; false outside the grid.
+bool map_height_m(const SurfaceMap& map, const Ellipsoid& body, const glm::dvec3& ecef_m,
+                  double& height_m);
+
+}  // namespace nepho
