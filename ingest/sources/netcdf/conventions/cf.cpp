@@ -228,12 +228,11 @@ Model model_of(const std::shared_ptr<CfFile>& cf) {
   model.droplet_number = find_named(file, names::kDropletNumber, accept);
   cf->find_air();
   cf->find_ground();
-  VerticalRequest request{cf->reader,
-                          cf->roles.z,
-                          cf->temperature,
-                          [cf](std::size_t time) { return cf->air(time); },
-                          {}};
-  if (cf->terrain) request.terrain_m = [cf](std::size_t time) { return cf->terrain_m(time); };
+  // `vertical` is part of the CfFile that these ask: a shared pointer would never let go.
+  const CfFile* self = cf.get();
+  VerticalRequest request{cf->reader, cf->roles.z, cf->temperature,
+                          [self](std::size_t time) { return self->air(time); }, {}};
+  if (cf->terrain) request.terrain_m = [self](std::size_t time) { return self->terrain_m(time); };
   cf->vertical = find_vertical(request);
   cf->choose_pressure(model);
   const auto say = [](std::vector<std::string>& to, const std::vector<std::string>& from) {
