@@ -7,6 +7,7 @@
 
 #include "conventions/convention.h"
 #include "core/error.h"
+#include "nc_writer.h"
 
 namespace nepho::netcdf {
 namespace {
@@ -45,8 +46,9 @@ void expect_sound(const Forecast& f) {
     ASSERT_EQ(c.interface_m.size(), cells * (nz + 1));
     for (std::size_t n = 0; n < c.extinction_per_m.size(); ++n) {
       ASSERT_TRUE(c.extinction_per_m[n] >= 0 && c.extinction_per_m[n] < 1);
-      if (!c.ice_extinction_per_m.empty())
+      if (!c.ice_extinction_per_m.empty()) {
         ASSERT_LE(c.ice_extinction_per_m[n], c.extinction_per_m[n]);
+      }
     }
     for (std::size_t n = 0; n < cells; ++n)
       for (std::size_t k = 0; k < nz; ++k)
@@ -96,12 +98,25 @@ TEST(RealFiles, GfsPackedCf) {
   expect_sound(*f);
 }
 
-// The file's own optical depth of stratiform cloud is within the cloudy part of each layer, and
-// was made with radii of its own: report the ratio, hold it within a factor of two.
+// The file's own optical depth of stratiform cloud (made with radii of its own) against a copy
+// without the convective water: 10 % more in all when it is read as it stands, 1.9 times when it is
+// taken as that of the cloudy part of each layer.
 TEST(RealFiles, UnifiedModel) {
-  const auto f = open("nc/um_38lev_cosp_input_2d.nc");
+  expect_sound(*open("nc/um_38lev_cosp_input_2d.nc"));
+  const test::TestFolder folder;
+  const std::string path = folder / "stratiform.nc";
+  std::filesystem::copy_file(std::string(NEPHO_TEST_REAL_DATA) + "/nc/um_38lev_cosp_input_2d.nc",
+                             path);
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  int id = 0, variable = 0;
+  ASSERT_EQ(nc_open(path.c_str(), NC_WRITE, &id), NC_NOERR);
+  for (const char* name : {"mr_ccliq", "mr_ccice"}) {
+    ASSERT_EQ(nc_inq_varid(id, name, &variable), NC_NOERR);
+    ASSERT_EQ(nc_rename_var(id, variable, (std::string("x") + (name + 3)).c_str()), NC_NOERR);
+  }
+  nc_close(id);
+  const auto f = test::open(path);
   print(*f);
-  expect_sound(*f);
   const std::vector<double> ours = optical_depths(f->columns(0));
   const NcFile file(std::string(NEPHO_TEST_REAL_DATA) + "/nc/um_38lev_cosp_input_2d.nc", {});
   const std::vector<double> depth = file.read_all(*file.find("dtau_s"));
@@ -124,8 +139,8 @@ TEST(RealFiles, UnifiedModel) {
       "measured: optical depth, ours / file's in cloud %.3f, / file's grid mean %.3f, "
       "cosine of both fields %.3f\n",
       total / in_cloud, total / mean, xy / std::sqrt(xx * yy));
-  EXPECT_GT(total / mean, 0.5);
-  EXPECT_LT(total / mean, 2.0);
+  EXPECT_GT(total / in_cloud, 0.7);
+  EXPECT_LT(total / in_cloud, 1.4);
   EXPECT_GT(xy / std::sqrt(xx * yy), 0.9);
 }
 

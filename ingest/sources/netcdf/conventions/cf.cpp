@@ -230,8 +230,11 @@ Model model_of(const std::shared_ptr<CfFile>& cf) {
   cf->find_ground();
   // `vertical` is part of the CfFile that these ask: a shared pointer would never let go.
   const CfFile* self = cf.get();
-  VerticalRequest request{cf->reader, cf->roles.z, cf->temperature,
-                          [self](std::size_t time) { return self->air(time); }, {}};
+  VerticalRequest request{cf->reader,
+                          cf->roles.z,
+                          cf->temperature,
+                          [self](std::size_t time) { return self->air(time); },
+                          {}};
   if (cf->terrain) request.terrain_m = [self](std::size_t time) { return self->terrain_m(time); };
   cf->vertical = find_vertical(request);
   cf->choose_pressure(model);

@@ -1,5 +1,6 @@
 // Several files that hold times of one forecast, such as one wrfout a file.
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "conventions/convention.h"
@@ -20,11 +21,11 @@ class JoinedForecast : public Forecast {
     std::size_t states = 0;
     for (const auto& part : parts_)
       for (std::size_t t = 0; t < part->times_s().size(); ++t, ++states)
-        places.insert_or_assign(part->time_origin_ns() + std::int64_t(part->times_s()[t] * 1e9),
+        places.insert_or_assign(part->time_origin_ns() + std::llround(part->times_s()[t] * 1e9),
                                 Place{part.get(), t});
     origin_ns_ = places.begin()->first;
     for (const auto& [ns, place] : places) {
-      times_s_.push_back(double(ns - origin_ns_) * 1e-9);
+      times_s_.push_back(double(ns - origin_ns_) / 1e9);
       places_.push_back(place);
     }
     if (states > places.size())

@@ -108,7 +108,7 @@ void ModelForecast::order_times() {
                            " times occur twice; the later state of each is used.");
   index_ = std::move(kept);
   origin_ns_ = ns(index_.front());
-  for (const std::size_t i : index_) times_s_.push_back(double(ns(i) - origin_ns_) * 1e-9);
+  for (const std::size_t i : index_) times_s_.push_back(double(ns(i) - origin_ns_) / 1e9);
 }
 
 CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& grid) const {

@@ -158,6 +158,15 @@ WaterVariable water_variable(const NcFile& file, const NcVariable& variable,
   return result;
 }
 
+// A vertical sum (kg m-2), whatever it is called, is no field of water.
+bool is_column(const NcVariable& variable) {
+  try {
+    return parse_unit(variable.text("units")).dimension == Dimension{.m = -2, .kg = 1};
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 const NcVariable* find_named(const NcFile& file, const VariableNames& wanted,
@@ -180,7 +189,7 @@ std::vector<WaterVariable> find_water(const NcFile& file,
     if (known) continue;
     for (const NcVariable& variable : file.variables())
       if (variable.numeric() && answers(variable, row.standard_names, row.names) &&
-          accept(variable)) {
+          accept(variable) && !is_column(variable)) {
         found.push_back(water_variable(file, variable, row));
         if (row.names.empty()) break;  // one of a standard name's variants
       }
