@@ -121,7 +121,9 @@ struct WrfTwin {
   double longitude(double i) const { return -90 + i * dx_m / kRadius_m / kDegree; }
   double terrain_m(int i, int j) const { return 100.0 * i + 10 * j; }
   // Geopotential of interface k, base and perturbation in one.
-  double phi(int k, int i, int j) const { return 9.81 * (terrain_m(i, j) + 500.0 * k); }
+  double phi(int k, int i, int j) const {
+    return 9.81 * (terrain_m(i, j) + 300.0 * k + 50.0 * k * k);
+  }
 
   std::string write(const std::string& name) const {
     const std::string path = folder() / (name + ".nc");

@@ -82,6 +82,7 @@ TEST(Wrf, HeightsStandOnTheModelsGround) {
       // 2000 m of the model's 9.81 are 2000.68 m of standard gravity, and it falls with height.
       const double base = twin.phi(0, i, j) / 9.80665, top = twin.phi(4, i, j) / 9.80665;
       const double rise = top / (1 - top / 6356766) - base / (1 - base / 6356766);
+      EXPECT_NEAR(double(c.interface_m[cell * 5 + 1]), twin.terrain_m(i, j) + 350.15, 0.1);
       EXPECT_NEAR(double(c.interface_m[cell * 5 + 4]), twin.terrain_m(i, j) + rise, 2e-3);
     }
   EXPECT_NEAR(f->height_range_m().x, 0, 1e-3);
