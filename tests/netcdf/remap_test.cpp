@@ -36,7 +36,7 @@ TEST_P(Cases, ColumnsAreTheFieldUnderTheSameKernel) {
 
 // Whole hats in all directions, from the source's own point field.
 TEST_P(Cases, SamplesAreTheFieldUnderTheSameKernel) {
-  const Remapped r(synthetic_forecast(GetParam()));
+  const Remapped r(synthetic_forecast(GetParam()), {}, 0, 0, netcdf::Layers::kConstant);
   const auto source = made_source(r.forecast);
   const double a = r.chart().body().equatorial_m;
   const Index3& n = r.cells();
