@@ -21,8 +21,8 @@ struct ModelColumn {
 // Means of a column's layers over the vertical hats of a ShellChart's level:
 //   c_k = sum over layers int beta(r) Lambda_k r^2 dr / int Lambda_k r^2 dr
 // A piece of a constant layer in a voxel is a cubic, which two Gauss points integrate exactly; a
-// piece of a parabola in volume is of a higher degree than four only by the curvature of the planet:
-// three points integrate it closer than a float tells.
+// piece of a parabola in volume is of a higher degree than five only by the curvature of the
+// planet: three points integrate it closer than a float tells.
 class VerticalHats {
  public:
   VerticalHats(const ShellChart& chart, std::uint32_t cells_z, const RemapOptions& options);
