@@ -399,8 +399,8 @@ PressureLevels pressure_levels(const NcFile& file, int z) {
 
 Vertical find_vertical(const VerticalRequest& request) {
   static constexpr std::array<Way, 7> kWays = {
-      by_half_levels,     by_level_heights,  by_geopotential_height, by_geopotential,
-      by_pressure_levels, by_pressure_field, by_height_axis};
+      by_half_levels,     by_level_heights, by_geopotential_height, by_geopotential,
+      by_pressure_levels, by_height_axis,   by_pressure_field};
   Vertical vertical;
   const NcFile& file = *request.reader->file;
   // Refused here whatever else there is: an axis out of order.
