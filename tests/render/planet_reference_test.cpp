@@ -215,6 +215,30 @@ TEST_F(PlanetReference, IceScattersAsIce) {
   EXPECT_GT(apart, 0.05);
 }
 
+// A constant node tells nothing of its ice: the finest levels must read its brick, as a cut does.
+TEST_F(PlanetReference, AConstantVolumeKeepsItsIce) {
+  const FieldSource plain(box(1000, 1000), isotropic(2), [](glm::dvec3) { return 5e-4; });
+  const DressedSource half(
+      plain,
+      [](VolumeInfo& info) {
+        info.channels.push_back({.channel = Channel::kIceExtinction, .name = "ice"});
+      },
+      0.5);
+  RenderRequest request = request_of({&half});
+  request.volumes[0].phase = {};
+  request.sun.to_sun = glm::normalize(glm::dvec3(-0.6, 0.5, 0.3));
+  request.camera = {{0, -1800, 600}, {0, 0, 500}, {0, 0, 1}, 0.7};
+  const HdrImage cut = exact_picture(request);
+  const HdrImage finest = march_picture(FinestLevels(request.volumes, 16), request);
+  request.volumes[0].source = &plain;
+  const double apart =
+      picture_error(march_picture(FinestLevels(request.volumes, 16), request), cut);
+  std::printf("measured: finest levels against the cut %.1e, water alone %.2f\n",
+              picture_error(finest, cut), apart);
+  EXPECT_LE(picture_error(finest, cut), 1e-5);
+  EXPECT_GT(apart, 0.05);
+}
+
 void expect_within_three(const char* term, double estimate, double measured) {
   std::printf("measured: %-16s estimated %.2e, measured %.2e, ratio %.2f\n", term, estimate,
               measured, estimate / measured);
