@@ -50,7 +50,8 @@ struct VolumeData {
   float ice_asymmetry;
 };
 
-// 16 bytes. Inner: first_child. Leaf: lit = its light tile. See NODE_* for flags.
+// 16 bytes. Inner: first_child. Leaf: lit = its light tile. flags: from bit 0 the kind (NODE_*, 3
+// bits), the axes that its split halves (3), log2 of its sides in finest cells (x, y, z, 5 each).
 struct NodeRecord {
   uint first_child_or_lit;
   uint flags;

@@ -19,40 +19,42 @@ Seen see(out float ground_m) {
   // Accounted for up to t; no cloud before `clear`.
   float t = 0.0, clear = 0.0;
   int ended = 0;
-  // Loops within one: llvmpipe runs what is in branches at every turn, and a span of air costs more
-  // than a leaf.
+  // Loops within loops: llvmpipe runs what is in branches at every turn, and a span of air or a new
+  // frame costs more than a leaf.
   while (ended == 0) {
-    bool empty = true, smooth_ = true;
-    float leave = FAR;
-    int looking = 1;
-    while (looking == 1) {
-      leave = settle_walks(clear, empty, smooth_);
-      empty = empty || leave >= FAR;
-      if (empty) clear = min(leave, last_m);
-      if (!empty || clear >= last_m) looking = 0;
-    }
+    enter_walks(clear);
+    int inside = 1;
+    while (inside == 1) {
+      bool empty, smooth_, enters;
+      float leave;
+      int looking = 1;
+      while (looking == 1) {
+        leave = settle_walks(clear, empty, smooth_, enters);
+        if (empty && !enters) clear = min(max(clear, leave), last_m);
+        if (enters || clear >= last_m || (!empty && leave > clear)) looking = 0;
+      }
 #ifdef NEPHO_AIR
-    while ((t < clear || t >= span.end_m) && t < last_m && passed(seen) >= frame.least_transmittance) {
-      if (t >= span.end_m) next_span();
-      float next = min(span.end_m, clear);
-      add_air(seen, t, next);
-      t = next;
-    }
-    float span_end = span.end_m;
+      while ((t < clear || t >= span.end_m) && t < last_m && passed(seen) >= frame.least_transmittance) {
+        if (t >= span.end_m) next_span();
+        float next = min(span.end_m, clear);
+        add_air(seen, t, next);
+        t = next;
+      }
+      float span_end = span.end_m;
 #else
-    t = clear;
-    float span_end = FAR;
+      t = clear;
+      float span_end = FAR;
 #endif
-    if (!empty && t < last_m && passed(seen) >= frame.least_transmittance) {
-      float stop = min(min(leave, span_end), last_m);
-#if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
-      begin_sky_light(t, stop);
-#endif
-      vec3 s0 = total_source_at(t);
-      march_segment(seen, t, stop, smooth_, s0);
-      t = clear = stop;
+      if (t >= last_m || passed(seen) < frame.least_transmittance) {
+        ended = 1;
+      } else if (!enters) {
+        float stop = min(min(leave, span_end), last_m);
+        march_segment(seen, t, stop, smooth_);
+        t = clear = stop;
+        if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
+      }
+      if (enters || ended == 1) inside = 0;
     }
-    if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
   }
   count_overrun(ended);
   return seen;
