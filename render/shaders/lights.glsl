@@ -2,11 +2,14 @@
 // scattering, and the sky seen along six directions (interim models: docs/accuracy.md).
 
 // Phase function towards the eye times a^n, per octave: the sun is distant, so once per ray.
-vec3 octave_phase[NEPHO_VOLUMES * NEPHO_OCTAVES];
+// Orders above 0 are grey.
+vec3 first_phase[NEPHO_VOLUMES];
+float octave_phase[NEPHO_VOLUMES * NEPHO_OCTAVES];
 float octave_rate[NEPHO_OCTAVES];  // b^n, once per ray
 #ifdef NEPHO_ICE
 layout(binding = 2) uniform sampler3D ice_atlas;
-vec3 octave_ice[NEPHO_VOLUMES * NEPHO_OCTAVES];  // the same of ice
+vec3 first_ice[NEPHO_VOLUMES];  // the same of ice
+float octave_ice[NEPHO_VOLUMES * NEPHO_OCTAVES];
 #endif
 
 layout(std430, binding = 4) readonly buffer PhaseBuffer { float phase_log[]; };  // rows of 1024 x 3
@@ -41,10 +44,10 @@ float ice_part(int volume, float t_m) {
 }
 
 void set_ice_octaves(int volume, float one_minus_cos) {
-  octave_ice[volume * NEPHO_OCTAVES] = table_phase(volumes[volume].ice_phase_row, one_minus_cos);
+  first_ice[volume] = table_phase(volumes[volume].ice_phase_row, one_minus_cos);
 #define NEPHO_DO_OCTAVE(n)                \
   octave_ice[volume * NEPHO_OCTAVES + n] = \
-      vec3(octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].ice_asymmetry)));
+      octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].ice_asymmetry));
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
 }
@@ -54,7 +57,7 @@ void set_ice_octaves(int volume, float one_minus_cos) {
 void set_octaves(int volume, float one_minus_cos) {
 #define NEPHO_DO_OCTAVE(n)                    \
   octave_phase[volume * NEPHO_OCTAVES + n] =  \
-      vec3(octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].asymmetry)));
+      octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].asymmetry));
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
 }
@@ -66,7 +69,7 @@ void begin_lights() {
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
 #define NEPHO_DO(v)                                                                              \
-  octave_phase[v * NEPHO_OCTAVES] = table_phase(volumes[v].phase_row, one_minus_cos);            \
+  first_phase[v] = table_phase(volumes[v].phase_row, one_minus_cos);                              \
   set_octaves(v, one_minus_cos);
   NEPHO_EACH_VOLUME
 #undef NEPHO_DO
@@ -111,17 +114,23 @@ float sun_part_at(float t_m) {
 vec3 source_at(int volume, float t_m) {
   vec3 at = walks[volume].light_tile + leaf_cells_at(volume, walks[volume], t_m);
   vec4 light = textureLod(light_atlas, (at + 0.5) * per_light_texel, 0.0);
+  float first = exp(-light.r), higher = 0.0;
 #ifdef NEPHO_ICE
   // k S = (k - k_ice) S_liquid + k_ice S_ice.
-  float ice = ice_part(volume, t_m);
-#define NEPHO_OCTAVE(n) mix(octave_phase[volume * NEPHO_OCTAVES + n], octave_ice[volume * NEPHO_OCTAVES + n], ice)
-#else
-#define NEPHO_OCTAVE(n) octave_phase[volume * NEPHO_OCTAVES + n]
-#endif
-  vec3 scattered = NEPHO_OCTAVE(0) * exp(-light.r);
-#define NEPHO_DO_OCTAVE(n) scattered += NEPHO_OCTAVE(n) * exp(-(octave_rate[n] * light.r));
+  float ice = ice_part(volume, t_m), higher_ice = 0.0;
+#define NEPHO_DO_OCTAVE(n) {                                    \
+  float through = exp(-(octave_rate[n] * light.r));             \
+  higher += octave_phase[volume * NEPHO_OCTAVES + n] * through; \
+  higher_ice += octave_ice[volume * NEPHO_OCTAVES + n] * through; }
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
+  vec3 scattered = mix(first_phase[volume] * first + higher, first_ice[volume] * first + higher_ice, ice);
+#else
+#define NEPHO_DO_OCTAVE(n) higher += octave_phase[volume * NEPHO_OCTAVES + n] * exp(-(octave_rate[n] * light.r));
+  NEPHO_EACH_OCTAVE
+#undef NEPHO_DO_OCTAVE
+  vec3 scattered = first_phase[volume] * first + higher;
+#endif
 #ifdef NEPHO_GROUND
   vec3 radiance = scattered * sun_light;
 #else

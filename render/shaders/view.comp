@@ -62,21 +62,31 @@ void add_step(inout Seen seen, vec3 s0, vec3 s1, float tau, float t, float step_
   seen.optical_depth += tau;
 }
 
+// Where the march through cloud is: extinction and source at its last place, and the step that is
+// tried next. `fresh` where that place was outside of cloud: the first step then has no length.
+struct March {
+  float k0;
+  vec3 s0;
+  float longest;
+  bool fresh;
+};
+March march = March(0.0, vec3(0.0), FAR, true);
+
 // One segment in which no volume changes its leaf. A step is halved until its optical depth is under
 // `thickest`: the source is linear in optical depth within a step, and where a voxel is thick it falls
-// off exponentially. What lies behind more of the cloud may be coarser, as less of it is seen.
+// off exponentially. What lies behind more of the cloud may be coarser, as less of it is seen. Leaves
+// side by side share their faces: what was found at the end of one holds for the next.
 void march_segment(inout Seen seen, float t, float end, bool smooth_) {
-  float k0 = total_extinction_at(t), voxel = cell_length(0.5 * (t + end));
-  vec3 s0 = total_source_at(t);
+  float voxel = cell_length(0.5 * (t + end));
 #ifdef NEPHO_CELL_EXACT
   const float thickest = 0.05;
+  march.fresh = true;
 #elif defined(NEPHO_ADAPTIVE)
   float thinnest = clamp(1.6 * sqrt(frame.tolerance), 0.05, 1.0), h = 2.0 * voxel;
 #else
   const float thickest = 1.0;
   float h = frame.step_voxels * voxel;
 #endif
-  float longest = FAR;  // after a refusal
   while (t < end) {
 #ifdef NEPHO_CELL_EXACT
     int sub_steps = 1;
@@ -88,28 +98,32 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
 #ifdef NEPHO_ADAPTIVE
     float thickest = min(thinnest * inversesqrt(max(passed(seen), 1.0 / 64.0)), 1.0);
 #endif
-    step_m = min(step_m, longest);
-    float k_mid = total_extinction_at(t + 0.5 * step_m), k1 = total_extinction_at(t + step_m);
-    float tau = simpson_optical_depth(k0, k_mid, k1, step_m);
+    step_m = march.fresh ? 0.0 : min(step_m, march.longest);
+    // The last step ends on the wall itself: no remainder by rounding.
+    float next_t = end - (t + step_m) < 1e-4 * step_m ? end : t + step_m;
+    float k_mid = total_extinction_at(t + 0.5 * step_m), k1 = total_extinction_at(next_t);
+    float tau = simpson_optical_depth(march.k0, k_mid, k1, step_m);
     bool refused = tau > thickest;
 #ifdef NEPHO_ADAPTIVE
     // Simpson against the trapezium: what the step leaves to its shape, as seen from the eye.
-    float doubt = passed(seen) * step_m * abs(k0 - 2.0 * k_mid + k1) * (1.0 / 6.0);
+    float doubt = passed(seen) * step_m * abs(march.k0 - 2.0 * k_mid + k1) * (1.0 / 6.0);
     refused = refused || (doubt > 0.6 * frame.tolerance && step_m > 1.01 * voxel);
     h = doubt < 0.08 * frame.tolerance ? 3.0 * voxel : 2.0 * voxel;
 #endif
     if (refused && step_m > 2.0 * least_step(t)) {
-      longest = 0.5 * step_m;
+      march.longest = 0.5 * step_m;
     } else {
-      // The last step ends on the wall itself: no remainder by rounding.
-      float next_t = end - (t + step_m) < 1e-4 * step_m ? end : t + step_m;
       vec3 s1 = total_source_at(next_t);
-      add_step(seen, s0, s1, tau, t, step_m);
-      s0 = s1;
-      k0 = k1;
-      longest = k1 * step_m > 0.0 ? max(2.0 * step_m, 0.0) : FAR;
+      if (!march.fresh) add_step(seen, march.s0, s1, tau, t, step_m);
+      // No more than what would be refused were extinction to stay; not where it is about to begin.
+      march.longest = max(2.0 * step_m, 0.9 * thickest / max(k1, 1e-30));
+      if (march.fresh) march.longest = FAR;
+      march.longest = min(march.longest, k1 > 0.0 ? 1.4 * thickest / k1 : FAR);
+      march.s0 = s1;
+      march.k0 = k1;
       // A float cannot hold a step below its own spacing: then the ray is done with this segment.
-      if (next_t <= t) break;
+      if (next_t <= t && !march.fresh) break;
+      march.fresh = false;
       t = next_t;
       if (passed(seen) < frame.least_transmittance) break;
     }
@@ -134,6 +148,7 @@ Seen see() {
       int looking = 1;
       while (looking == 1) {
         leave = settle_walks(t, empty, smooth_, enters);
+        if (empty) march.fresh = true;
         if (empty && !enters && leave < FAR) t = min(max(t, leave), end_m);
         if (enters || leave >= FAR || t >= end_m || (!empty && leave > t)) looking = 0;
       }
