@@ -9,6 +9,7 @@
 #include "bricks/shell_chart.h"
 #include "core/error.h"
 #include "gl/atlas.h"
+#include "gl/node_grid.h"
 #include "optics/phase_table.h"
 #include "tree/source_verbs.h"
 
@@ -208,6 +209,7 @@ GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
     for (int c = 0; c < 3; ++c) data.albedo[c] = float(1 - volume.co_albedo[c]);
     if (volume.co_albedo != glm::dvec3(0)) scene.absorbs = true;
     add_nodes(scene, forest.volumes[v], int(v));
+    data.first_grid = append_grids(scene.nodes, forest.volumes[v], data.first_node);
     scene.volumes.push_back(data);
   }
   if (request.planet) {

@@ -48,6 +48,8 @@ struct VolumeData {
   float asymmetry;
   int ice_phase_row;  // of the part that is ice, where the volume tells it apart
   float ice_asymmetry;
+  int first_grid;     // in the node buffer: gl/node_grid.h
+  int pad;
 };
 
 // 16 bytes. Inner: first_child. Leaf: lit = its light tile. flags: from bit 0 the kind (NODE_*, 3

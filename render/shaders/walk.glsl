@@ -20,6 +20,7 @@ struct Walk {
   float stretch;     // shell: scaled metres per metre
   float anchor_m;    // where on the ray the frame stands: 0, or the entry into the chart
   int root;
+  uvec4 grid, grid_size;  // of the root: gl/node_grid.h
   // The leaf.
   ivec3 low, high;   // its box in finest cells, high excluded
   uint kind;
@@ -52,6 +53,8 @@ vec3 tile_origin(uint slot, vec2 tiles) {
   return 9.0 * vec3(at - row * tiles.x, row - layer * tiles.y, layer);
 }
 
+uvec4 node_at(uint n) { return nodes[n]; }
+
 ivec3 node_sides(uint flags) { return ivec3(flags >> 6 & 31u, flags >> 11 & 31u, flags >> 16 & 31u); }
 
 // The leaf that holds a finest cell of the walk's root.
@@ -63,11 +66,19 @@ void descend(int volume, inout Walk w, ivec3 cell) {
   if ((volumes[volume].periodic & 2) != 0) period.y = int(floor(float(cell.y) / float(cells.y))) * cells.y;
 #endif
   ivec3 local = cell - period;
-  uvec4 node = nodes[volumes[volume].first_node + w.root];
+  uint at = uint(volumes[volume].first_node + w.root);
+  ivec3 place = (local >> ivec3(w.grid_size.w & 31u, w.grid_size.w >> 5 & 31u, w.grid_size.w >> 10 & 31u)) - ivec3(w.grid.xyz);
+  ivec3 size = ivec3(w.grid_size.xyz);
+  if (all(greaterThanEqual(place, ivec3(0))) && all(lessThan(place, size))) {
+    int n = (place.z * size.y + place.y) * size.x + place.x;
+    uvec4 four = node_at(w.grid.w + uint(n >> 2));
+    at = (n & 2) == 0 ? ((n & 1) == 0 ? four.x : four.y) : (n & 1) == 0 ? four.z : four.w;
+  }
+  uvec4 node = node_at(at);
   while ((node.y & 7u) == NODE_INNER) {
     ivec3 split = ivec3(node.y >> 3 & 1u, node.y >> 4 & 1u, node.y >> 5 & 1u);
     ivec3 upper = local >> max(node_sides(node.y) - 1, 0) & split;
-    node = nodes[node.x + uint(upper.x | upper.y << split.x | upper.z << (split.x + split.y))];
+    node = node_at(node.x + uint(upper.x | upper.y << split.x | upper.z << (split.x + split.y)));
   }
   w.kind = node.y & 7u;
   ivec3 side = node_sides(node.y);
@@ -155,6 +166,8 @@ void enter_chart(int volume, inout Walk w) {
   int layer = w.low.z;
   if (is_shell(volume)) shell_set_face(volume, w, crosses ? w.root : shell_face_at(volume, w, t_m));
 #endif
+  w.grid = node_at(uint(volumes[volume].first_grid + 2 * w.root));
+  w.grid_size = node_at(uint(volumes[volume].first_grid + 2 * w.root + 1));
   ivec3 cell = w.index + ivec3(floor(cells_at(volume, w, t_m)));
   ivec3 last = ivec3(volumes[volume].cells[0], volumes[volume].cells[1], volumes[volume].cells[2]) - 1;
   if ((volumes[volume].periodic & 1) == 0) cell.x = clamp(cell.x, 0, last.x);
