@@ -42,7 +42,7 @@ class Octaves {
   // Weather takes its share of all. Most of the variance, by default: a voxel seen from space holds
   // the mean of its clouds, so that clouds without systems would be an even grey veil.
   void add_weather() {
-    const double share = 0.9 * spec_.weather;
+    const double share = 0.95 * spec_.weather;
     double rest = 0;
     for (const Octave& octave : list_) rest += octave.amplitude;
     const double w = rest * share / (1 - share);
@@ -148,15 +148,15 @@ LayerSpec default_layer(LayerType type) {
   switch (type) {
     case LayerType::kStratus:
       s.coverage = 0.9, s.base_m = 400, s.top_m = 800, s.scale_m = 12e3, s.wind_m_per_s = 6;
-      s.wind_from_rad = 200 * deg, s.extinction_per_m = 0.05;
+      s.wind_from_rad = 200 * deg, s.extinction_per_m = 0.02;
       break;
     case LayerType::kStratocumulus:
       s.coverage = 0.8, s.base_m = 900, s.top_m = 1400, s.scale_m = 5e3, s.wind_m_per_s = 8;
-      s.wind_from_rad = 320 * deg, s.extinction_per_m = 0.05;
+      s.wind_from_rad = 320 * deg, s.extinction_per_m = 0.03;
       break;
     case LayerType::kCumulus:
       s.coverage = 0.3, s.base_m = 900, s.top_m = 2800, s.scale_m = 2e3, s.wind_m_per_s = 5;
-      s.wind_from_rad = 250 * deg, s.extinction_per_m = 0.08;
+      s.wind_from_rad = 250 * deg, s.extinction_per_m = 0.04;
       break;
     case LayerType::kCirrus:
       s.coverage = 0.4, s.base_m = 8200, s.top_m = 10000, s.scale_m = 3e3, s.wind_m_per_s = 30;
@@ -209,10 +209,10 @@ double Layer::climate(double s) const {
     case LayerType::kStratocumulus:
       return w * (0.6 * bump(a, 0.75, 0.3) - 0.8 * bump(s, 0.08, 0.15) - 0.8 * bump(a, 1, 0.06));
     case LayerType::kCumulus:
-      return w * (0.9 * bump(s, 0.09, 0.09) - 0.5 * bump(a, 0.4, 0.12) + 0.2 * bump(a, 0.7, 0.2) -
+      return w * (0.6 * bump(s, 0.09, 0.09) - 0.5 * bump(a, 0.4, 0.12) + 0.2 * bump(a, 0.7, 0.2) -
                   1.5 * bump(a, 1, 0.1));
     case LayerType::kCirrus:
-      return w * (0.9 * bump(s, 0.09, 0.12) - 0.7 * bump(a, 0.38, 0.12) + 0.5 * bump(a, 0.72, 0.2));
+      return w * (0.6 * bump(s, 0.09, 0.12) - 0.7 * bump(a, 0.38, 0.12) + 0.5 * bump(a, 0.72, 0.2));
   }
   return 0;
 }
