@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/glm.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct SlabRow {
 
 struct RayleighSlab {
   Air air;
+  glm::dvec3 depth{0.0};  // optical
   std::vector<SlabRow> rows;
 
   explicit RayleighSlab(const std::string& path) {
@@ -53,7 +55,8 @@ struct RayleighSlab {
       row.azimuth_deg = truth.at(r, "dphi_deg");
       row.up[c] = truth.at(r, "I_up_top");
       row.down[c] = truth.at(r, "I_down_bottom_diffuse");
-      air.rayleigh_per_m[c] = truth.at(r, "tau") / column_m;
+      depth[c] = truth.at(r, "tau");
+      air.rayleigh_per_m[c] = depth[c] / column_m;
     }
   }
 };
