@@ -86,6 +86,9 @@ class Solver {
     for (std::size_t f = 0; f < fields_.size(); ++f)
       fields_[f] = closed(first[f], second[f], kept_[f / kSuns]);
     set_light();
+#if defined(NEPHO_MUTANT_TABLE)
+    for (float& v : tables_.NEPHO_MUTANT_TABLE.rgb) v *= NEPHO_MUTANT_FACTOR;
+#endif
     set_sky();
   }
 

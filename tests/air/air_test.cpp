@@ -1,11 +1,16 @@
 #include <gtest/gtest.h>
 
+#include <oneapi/tbb/global_control.h>
+
 #include <cmath>
+#include <cstring>
+#include <ctime>
 #include <numbers>
 
 #include "accuracy_report.h"
 #include "air/air_lookup.h"
 #include "physics/physics_cpp.h"
+#include "truth_table.h"
 
 namespace nepho {
 namespace {
@@ -47,6 +52,68 @@ TEST(AirDepth, VerticalDepthIsTheClosedForm) {
   }
 }
 
+// The Chapman function is the exact depth of an exponential layer around a sphere.
+TEST(AirTables, TransmittanceIsChapmansFunction) {
+  const test::TruthTable truth(NEPHO_TRUTH_DIR "/chapman.csv");
+  constexpr double kTruthRadius_m = 6371e3;
+  double worst = 0, worst_table = 0;
+  int rows = 0;
+  for (const double scale_m : {8000.0, 1200.0}) {
+    Air air;
+    air.ozone_per_m = air.aerosol_extinction_per_m = glm::dvec3{0.0};
+    air.rayleigh_scale_m = scale_m;
+    Air endless = air;  // the truth has no top
+    endless.top_m = 14 * scale_m;
+    const AirTables made = make_air_tables(air, kTruthRadius_m, glm::dvec3{0.1});
+    const AirLookup lookup(air, kTruthRadius_m, made);
+    for (std::size_t r = 0; r < truth.rows(); ++r) {
+      if (truth.at(r, "H_m") != scale_m) continue;
+      const double h_m = truth.at(r, "h_m"), zenith = truth.at(r, "zenith_deg") * pi / 180;
+      if (zenith > pi / 2 + std::acos(kTruthRadius_m / (kTruthRadius_m + h_m))) continue;
+      ++rows;
+      const double mu = std::cos(zenith);
+      const double amount_m = scale_m * std::exp(-h_m / scale_m) * truth.at(r, "Chapman");
+      const glm::dvec3 found = air_optical_depth(endless, kTruthRadius_m, h_m, mu, kEndless_m);
+      const glm::dvec3 held = lookup.depth(h_m, mu);
+      for (int c = 0; c < 3; ++c) {
+        const double exact = air.rayleigh_per_m[c] * amount_m;
+        const double through = std::exp(-exact);
+        worst = std::max(worst, std::abs(std::exp(-found[c]) - through));
+        worst_table = std::max(worst_table, std::abs(std::exp(-held[c]) - through));
+      }
+    }
+  }
+  EXPECT_GE(rows, 60);
+  test::report_accuracy("clear air", "transmittance by quadrature against Chapman's function",
+                        worst, 1e-6, "1");
+  test::report_accuracy("clear air", "transmittance table against Chapman's function", worst_table,
+                        2e-3, "1");
+  EXPECT_LE(worst, 1e-6);
+  EXPECT_LE(worst_table, 2e-3);
+}
+
+TEST(AirTables, BitsDoNotDependOnThreads) {
+  const auto made_with = [](int threads) {
+    const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
+                                            std::size_t(threads));
+    const std::clock_t begin = std::clock();
+    AirTables made = make_air_tables(Air{}, kRadius_m, glm::dvec3{0.1});
+    std::printf("measured: clear air: tables with %d threads: %.2f CPU s\n", threads,
+                double(std::clock() - begin) / CLOCKS_PER_SEC);
+    return made;
+  };
+  const AirTables one = made_with(1), eight = made_with(8);
+  for (const auto table :
+       {&AirTables::depth, &AirTables::multiple, &AirTables::multiple_p2, &AirTables::sky_up,
+        &AirTables::sky_side, &AirTables::sky_down, &AirTables::sky_low}) {
+    ASSERT_FALSE((one.*table).rgb.empty());
+    ASSERT_EQ((one.*table).rgb.size(), (eight.*table).rgb.size());
+    EXPECT_EQ(std::memcmp((one.*table).rgb.data(), (eight.*table).rgb.data(),
+                          (one.*table).rgb.size() * sizeof(float)),
+              0);
+  }
+}
+
 TEST(AirTables, TheSkyDarkensWithoutJumpsToTheEndOfTwilight) {
   const AirLookup lookup(Air{}, kRadius_m, tables());
   double before = 0, worst = 0;
@@ -60,16 +127,6 @@ TEST(AirTables, TheSkyDarkensWithoutJumpsToTheEndOfTwilight) {
   test::report_accuracy("clear air", "twilight, log10 of luminance per 0.1 degree", worst, 0.05,
                         "1");
   EXPECT_LE(worst, 0.05);
-}
-
-TEST(Water, ReflectsNoMoreThanItGets) {
-  for (const double wind : {0.0, 6.0, 20.0})
-    for (const double mu : {1e-5, 0.05, 0.3, 1.0}) {
-      const double radiance =
-          f64::water_radiance(0.05, 0, mu, 0.5, 1, 1, f64::water_slope_variance(wind), 1, 1);
-      EXPECT_GT(radiance, 0);
-      EXPECT_LE(radiance, 1);
-    }
 }
 
 }  // namespace

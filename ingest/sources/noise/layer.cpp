@@ -39,13 +39,20 @@ class Octaves {
       cell_m *= 0.51, share *= ratio, stretch = std::max(1.0, stretch * stretch_ratio);
     }
   }
-  // Weather takes its share of all.
-  void add_weather(double share) {
+  // Weather takes its share of all. Most of the variance, by default: a voxel seen from space holds
+  // the mean of its clouds, so that clouds without systems would be an even grey veil.
+  void add_weather() {
+    const double share = 0.95 * spec_.weather;
     double rest = 0;
     for (const Octave& octave : list_) rest += octave.amplitude;
     const double w = rest * share / (1 - share);
-    add(Domain::kGlobe, Shape::kPlain, 1.9e6, 0.22 * w);
-    add(Domain::kGlobe, Shape::kRidge, 1.1e6, 0.34 * w);
+    const auto system = [&](Shape shape, double cell_m, double part) {
+      add(Domain::kGlobe, shape, cell_m, part * w);
+      list_.back().seed = spec_.weather_seed * 0x9e3779b9u + (part > 0.3 ? 2u : 1u);
+    };
+    if (!(w > 0)) return;
+    system(Shape::kPlain, 1.9e6, 0.22);
+    system(Shape::kRidge, 1.1e6, 0.34);
     add(Domain::kGlobe, Shape::kPlain, 4.7e5, 0.20 * w);
     add(Domain::kGlobe, Shape::kRidge, 2.3e5, 0.12 * w);
     add(Domain::kGlobe, Shape::kPlain, 1.1e5, 0.08 * w);
@@ -71,7 +78,7 @@ void cumulus(Octaves& o, Layer& layer) {
   o.add(Domain::kSheet, Shape::kPlain, 0.70 * s, 0.34);
   o.add(Domain::kSheet, Shape::kPlain, 0.36 * s, 0.16);
   o.add_many(Domain::kVolume, Shape::kBillow, 0.26 * s, 0.10, 0.45, 5);
-  o.add_weather(0.45 * layer.spec.weather);
+  o.add_weather();
   layer.rise = {{{0.12, 0.5}, {0.8, 0.5}}};
   layer.lean = layer.spec.wind_m_per_s / 40;
 }
@@ -83,7 +90,7 @@ void stratocumulus(Octaves& o, Layer& layer) {
   o.add(Domain::kSheet, Shape::kPlain, 0.55 * s, 0.10);
   o.add(Domain::kSheet, Shape::kCells, 0.31 * s, 0.10);
   o.add_many(Domain::kVolume, Shape::kBillow, 0.14 * s, 0.08, 0.55, 6);
-  o.add_weather(0.4 * layer.spec.weather);
+  o.add_weather();
   layer.rise = {{{0.20, 0.4}, {1.2, 0.6}}};
   layer.regimes = layer.spec.weather > 0;
 }
@@ -92,7 +99,7 @@ void stratus(Octaves& o, Layer& layer) {
   const double s = layer.spec.scale_m;
   o.add_many(Domain::kSheet, Shape::kPlain, 2 * s, 0.4, 0.55, 5, 1 + layer.spec.wind_m_per_s / 10);
   o.add_many(Domain::kVolume, Shape::kPlain, 0.06 * s, 0.05, 0.5, 6);
-  o.add_weather(0.5 * layer.spec.weather);
+  o.add_weather();
   layer.rise = {{{0.5, 0.4}, {2.0, 0.6}}};
 }
 
@@ -102,7 +109,7 @@ void cirrus(Octaves& o, Layer& layer) {
   const double stretch = 1 + wind / 3;
   o.add_many(Domain::kSheet, Shape::kPlain, 20 * s, 0.20, 0.7, 3, 2.5);
   o.add_many(Domain::kStreak, Shape::kPlain, 1.6 * s, 0.22, 0.62, 7, stretch, 0.85);
-  o.add_weather(0.45 * layer.spec.weather);
+  o.add_weather();
   layer.rise = {{{1.0, 0.3}, {3.0, 0.7}}};
   layer.trail_m = wind / 5 * thick;
 }
@@ -141,15 +148,15 @@ LayerSpec default_layer(LayerType type) {
   switch (type) {
     case LayerType::kStratus:
       s.coverage = 0.9, s.base_m = 400, s.top_m = 800, s.scale_m = 12e3, s.wind_m_per_s = 6;
-      s.wind_from_rad = 200 * deg, s.extinction_per_m = 0.05;
+      s.wind_from_rad = 200 * deg, s.extinction_per_m = 0.02;
       break;
     case LayerType::kStratocumulus:
       s.coverage = 0.8, s.base_m = 900, s.top_m = 1400, s.scale_m = 5e3, s.wind_m_per_s = 8;
-      s.wind_from_rad = 320 * deg, s.extinction_per_m = 0.05;
+      s.wind_from_rad = 320 * deg, s.extinction_per_m = 0.03;
       break;
     case LayerType::kCumulus:
       s.coverage = 0.3, s.base_m = 900, s.top_m = 2800, s.scale_m = 2e3, s.wind_m_per_s = 5;
-      s.wind_from_rad = 250 * deg, s.extinction_per_m = 0.08;
+      s.wind_from_rad = 250 * deg, s.extinction_per_m = 0.04;
       break;
     case LayerType::kCirrus:
       s.coverage = 0.4, s.base_m = 8200, s.top_m = 10000, s.scale_m = 3e3, s.wind_m_per_s = 30;
@@ -202,10 +209,10 @@ double Layer::climate(double s) const {
     case LayerType::kStratocumulus:
       return w * (0.6 * bump(a, 0.75, 0.3) - 0.8 * bump(s, 0.08, 0.15) - 0.8 * bump(a, 1, 0.06));
     case LayerType::kCumulus:
-      return w * (0.9 * bump(s, 0.09, 0.09) - 0.5 * bump(a, 0.4, 0.12) + 0.2 * bump(a, 0.7, 0.2) -
+      return w * (0.6 * bump(s, 0.09, 0.09) - 0.5 * bump(a, 0.4, 0.12) + 0.2 * bump(a, 0.7, 0.2) -
                   1.5 * bump(a, 1, 0.1));
     case LayerType::kCirrus:
-      return w * (0.9 * bump(s, 0.09, 0.12) - 0.7 * bump(a, 0.38, 0.12) + 0.5 * bump(a, 0.72, 0.2));
+      return w * (0.6 * bump(s, 0.09, 0.12) - 0.7 * bump(a, 0.38, 0.12) + 0.5 * bump(a, 0.72, 0.2));
   }
   return 0;
 }

@@ -23,9 +23,10 @@ struct LayerSpec {
   double base_m = 0, top_m = 0, scale_m = 0;
   double wind_m_per_s = 0, wind_from_rad = 0;
   double extinction_per_m = 0;
-  double weather = 0.6;  // 0: the same everywhere; 1: systems of 1000 km, clear and overcast
+  double weather = 0.8;  // 0: the same everywhere; 1: systems of 1000 km, clear and overcast
   double climate = 1;    // how much latitude matters, of what weather makes of it
   std::uint32_t seed = 1;
+  std::uint32_t weather_seed = 1;  // of the largest systems, which layers share
 };
 // What a type has where the scene says nothing.
 LayerSpec default_layer(LayerType type);

@@ -8,10 +8,10 @@ namespace nepho::noise {
 
 // The procedural planet: layers of cloud around WGS84. Parameters, all optional:
 //
-//   weather            0.6   0..1: synoptic systems, regions of open and closed cells, clear skies
+//   weather            0.8   0..1: synoptic systems, regions of open and closed cells, clear skies
 //   climate            1     0..1: how much of it follows the latitude (rain belt, clear
 //   subtropics) seed               1     of the weather, and of layers without a seed of their own
-//   finest_resolution  50 m  finest voxel, at most
+//   finest_resolution  100 m  finest voxel, at most
 //
 //   layer1.type        cumulus | stratocumulus | stratus | cirrus;   up to layer8; where no layer
 //   is

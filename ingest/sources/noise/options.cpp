@@ -70,10 +70,10 @@ std::vector<LayerSpec> read_layers(Parameters& p, const SourceRequest& request, 
 // A sky of a whole planet: less of each than where it is the weather of the day.
 std::vector<LayerSpec> default_sky(int seed) {
   std::vector<LayerSpec> layers;
-  const std::pair<LayerType, double> parts[] = {{LayerType::kCumulus, 0.22},
-                                                {LayerType::kStratocumulus, 0.22},
-                                                {LayerType::kStratus, 0.12},
-                                                {LayerType::kCirrus, 0.28}};
+  const std::pair<LayerType, double> parts[] = {{LayerType::kCumulus, 0.14},
+                                                {LayerType::kStratocumulus, 0.14},
+                                                {LayerType::kStratus, 0.10},
+                                                {LayerType::kCirrus, 0.22}};
   for (const auto& [type, coverage] : parts) {
     layers.push_back(default_layer(type));
     layers.back().coverage = coverage;
@@ -103,10 +103,10 @@ Planet make_planet(const SourceRequest& request) {
   if (request.file_count > 0)
     throw Error({"the noise source reads no files", request.files[0], "no file", "", ""});
   Planet planet;
-  const double weather = p.number_in("weather", 0.6, 0, 1);
+  const double weather = p.number_in("weather", 0.8, 0, 1);
   const double climate = p.number_in("climate", 1, 0, 1);
   const int seed = p.integer("seed", 1, 0, 1'000'000);
-  const double finest_m = p.positive("finest_resolution_m", 50);
+  const double finest_m = p.positive("finest_resolution_m", 100);
   planet.layers = read_layers(p, request, seed);
   p.finish();
   if (planet.layers.empty()) planet.layers = default_sky(seed);
@@ -114,6 +114,9 @@ Planet make_planet(const SourceRequest& request) {
   bool ice = false;
   for (LayerSpec& layer : planet.layers) {
     layer.weather = weather, layer.climate = climate;
+    // Fronts are high and low; fair weather lies between them.
+    const bool front = layer.type == LayerType::kStratus || layer.type == LayerType::kCirrus;
+    layer.weather_seed = std::uint32_t(seed * 2 + front);
     bottom_m = std::min(bottom_m, layer.base_m), top_m = std::max(top_m, layer.top_m);
     most += layer.extinction_per_m;
     ice = ice || layer.type == LayerType::kCirrus;
