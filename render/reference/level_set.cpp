@@ -117,18 +117,26 @@ std::shared_ptr<const LeafBrick> FinestLevels::brick(std::size_t volume, NodeKey
   const RenderVolume& v = volumes_[volume];
   auto brick = std::make_shared<LeafBrick>();
   read_brick(*v.source, v.time_s, key, *brick);
-  ++cache_->bricks_read;
   const std::lock_guard lock(shard.mutex);
   if (shard.bricks.size() >= cache_->bricks_per_shard) shard.bricks.clear();
-  return shard.bricks.insert({{volume, key}, std::move(brick)}).first->second;
+  const auto [at, inserted] = shard.bricks.insert({{volume, key}, std::move(brick)});
+  if (inserted) ++cache_->bricks_read;  // by two threads at once: one
+  return at->second;
 }
 
-LevelLeaf FinestLevels::leaf(std::size_t volume, int root, const Index3& finest_cell) const {
+LevelLeaf DeeperLevels::leaf(std::size_t volume, int root, const Index3& finest_cell) const {
+  const int own = leaf_at(forest_.volumes[volume], root, finest_cell).key.level();
+  return finest_.leaf_above(volume, root, finest_cell,
+                            std::min(own + deeper_, info(volume).lattice.max_level()));
+}
+
+LevelLeaf FinestLevels::leaf_above(std::size_t volume, int root, const Index3& finest_cell,
+                                   int most_level) const {
   const Lattice& lattice = info(volume).lattice;
   for (int level = 0;; ++level) {
     const NodeKey key = node_of(lattice, root, finest_cell, level);
     const NodeSummary s = summary(volume, key);
-    const bool last = level == lattice.max_level();
+    const bool last = level == most_level;
     const bool empty = s.empty && (last || s.children == 0 || s.error_bound_per_m == 0);
     if (empty || (s.constant && s.constant_extinction_per_m == 0))
       return {.key = key, .kind = NodeKind::kEmpty, .constant_per_m = 0, .brick = nullptr};

@@ -72,7 +72,11 @@ class FinestLevels final : public LevelSet {
   const VolumeInfo& info(std::size_t volume) const override {
     return volumes_[volume].source->info();
   }
-  LevelLeaf leaf(std::size_t volume, int root, const Index3& finest_cell) const override;
+  LevelLeaf leaf(std::size_t volume, int root, const Index3& finest_cell) const override {
+    return leaf_above(volume, root, finest_cell, info(volume).lattice.max_level());
+  }
+  // No finer than `level`.
+  LevelLeaf leaf_above(std::size_t volume, int root, const Index3& finest_cell, int level) const;
   std::uint64_t bricks_read() const;
 
  private:
@@ -83,6 +87,22 @@ class FinestLevels final : public LevelSet {
   std::vector<RenderVolume> volumes_;
   std::vector<char> tells_ice_;
   std::unique_ptr<Cache> cache_;
+};
+
+// At each place no more than `deeper` levels below a forest's cut: on a planet the finest cells are
+// a thousandth of a pixel over most of the picture, and of no account. Both outlive this.
+class DeeperLevels final : public LevelSet {
+ public:
+  DeeperLevels(const Forest& forest, const FinestLevels& finest, int deeper)
+      : forest_(forest), finest_(finest), deeper_(deeper) {}
+  std::size_t size() const override { return finest_.size(); }
+  const VolumeInfo& info(std::size_t volume) const override { return finest_.info(volume); }
+  LevelLeaf leaf(std::size_t volume, int root, const Index3& finest_cell) const override;
+
+ private:
+  const Forest& forest_;
+  const FinestLevels& finest_;
+  int deeper_;
 };
 
 }  // namespace nepho

@@ -19,6 +19,9 @@ namespace nepho {
 namespace {
 
 constexpr double kFinestCache_MiB = 256;
+constexpr int kDeeper = 1;  // levels, over a planet
+constexpr std::size_t kBatches = 8;
+constexpr std::uint64_t kManyBricks = 2000;
 
 // Neighbours on the picture are neighbours on this curve.
 std::uint64_t morton(std::uint32_t x, std::uint32_t y) {
@@ -112,9 +115,15 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   const FinestLevels finest_levels(request.volumes, kFinestCache_MiB);
   const RayMarch cut_march(cut_levels, request, {}, planet),
       noisy_march(noisy_levels, request, {}, planet);
+  const DeeperLevels deeper_levels(cut, finest_levels, kDeeper);
+  const LevelSet& true_levels =
+      planet ? static_cast<const LevelSet&>(deeper_levels) : finest_levels;
   std::optional<RayMarch> finest_march;
-  if (!holds_everything(cut)) finest_march.emplace(finest_levels, request, MarchSettings{}, planet);
+  if (!holds_everything(cut)) finest_march.emplace(true_levels, request, MarchSettings{}, planet);
   const int octaves = settings.light == Light::kOctaves ? settings.octaves : 1;
+
+  // The smallest of the terms: over a planet, where rays are long, a quarter of the probes.
+  const auto tells_noise = [&](std::size_t p) { return !planet || p % 4 == 0; };
 
   std::vector<Probe> probes(pixels.size());
   tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
@@ -124,20 +133,32 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
     probe.picture = pixel_luminance(picture, pixels[p].pixel);
     probe.weight = pixels[p].weight;
     probe.cut = luminance(exact.radiance_W_per_m2_sr_nm);
-    probe.noisy = luminance(noisy_march.trace(ray).radiance_W_per_m2_sr_nm);
-    probe.finest =
-        finest_march ? luminance(finest_march->trace(ray).radiance_W_per_m2_sr_nm) : probe.cut;
+    if (tells_noise(p)) probe.noisy = luminance(noisy_march.trace(ray).radiance_W_per_m2_sr_nm);
+    probe.finest = probe.cut;
     const glm::dvec3 apart = glm::normalize(request.sun.to_sun) - ray.direction;
     probe.light_model =
         luminance(exact.scattered_W_per_m2_sr_nm) *
         light_model_error(octaves, exact.optical_depth, 0.5 * glm::dot(apart, apart));
   });
 
+  // In batches, each over all of the picture, until many bricks were read: a planet that is worked
+  // out as it is read has no end of them.
+  const std::size_t batches = planet ? kBatches : 1;
+  std::size_t marched = 0;
+  for (; finest_march && marched < batches && finest_levels.bricks_read() < kManyBricks; ++marched)
+    tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
+      if (p % batches != marched) return;
+      const Ray ray = pixel_ray(request, picture, pixels[p].pixel);
+      probes[p].finest = luminance(finest_march->trace(ray).radiance_W_per_m2_sr_nm);
+    });
+
   std::vector<PixelPair> integration, level_of_detail, quantisation, light_model;
-  for (const Probe& probe : probes) {
+  for (std::size_t p = 0; p < probes.size(); ++p) {
+    const Probe& probe = probes[p];
     integration.push_back({probe.picture, probe.cut, probe.weight});
-    level_of_detail.push_back({probe.cut, probe.finest, probe.weight});
-    quantisation.push_back({probe.noisy, probe.cut, probe.weight});
+    if (!finest_march || p % batches < marched)
+      level_of_detail.push_back({probe.cut, probe.finest, probe.weight});
+    if (tells_noise(p)) quantisation.push_back({probe.noisy, probe.cut, probe.weight});
     light_model.push_back({probe.cut + probe.light_model, probe.cut, probe.weight});
   }
   estimate.integration = relative_rms(integration);
