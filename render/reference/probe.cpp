@@ -19,6 +19,8 @@ namespace nepho {
 namespace {
 
 constexpr double kFinestCache_MiB = 256;
+// Below the picture's own: what is finer still is left out of the term, and the line says so.
+constexpr int kFinerLevels = 3;
 
 // Neighbours on the picture are neighbours on this curve.
 std::uint64_t morton(std::uint32_t x, std::uint32_t y) {
@@ -109,7 +111,7 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
 
   const CutLevels cut_levels(cut);
   const NoisyCutLevels noisy_levels(cut, settings.seed);
-  const FinestLevels finest_levels(request.volumes, kFinestCache_MiB);
+  const FinestLevels finest_levels(request.volumes, kFinestCache_MiB, &cut, kFinerLevels);
   const RayMarch cut_march(cut_levels, request, {}, planet),
       noisy_march(noisy_levels, request, {}, planet);
   std::optional<RayMarch> finest_march;
@@ -144,9 +146,15 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   estimate.level_of_detail = relative_rms(level_of_detail);
   estimate.quantisation = relative_rms(quantisation);
   estimate.light_model = relative_rms(light_model);
-  estimate.light_model_basis =
-      planet ? "table, slabs; all terms over the whole picture" : "table, slabs";
-  return estimate;
+  estimate.light_model_basis = planet ? "table, slabs;
+      for (const VolumeTree& tree : cut.volumes) if (tree.finest_level_used + kFinerLevels <
+                                                     tree.source->info().lattice.max_level()) {
+    estimate.light_model_basis +=
+        "; level of detail against " + std::to_string(kFinerLevels) + " finer levels";
+    break;
+  }
+  all terms over the whole picture " : " table, slabs ";
+      return estimate;
 }
 
 }  // namespace nepho
