@@ -36,7 +36,8 @@ double pixel_luminance(const HdrImage& picture, std::size_t pixel) {
   return f64::luminance(double(rgb[0]), double(rgb[1]), double(rgb[2]));
 }
 
-double picture_error(const HdrImage& picture, const HdrImage& reference, Counts counts) {
+double picture_error(const HdrImage& picture, const HdrImage& reference,
+                     [[maybe_unused]] Counts counts) {
   if (picture.width != reference.width || picture.height != reference.height)
     throw std::invalid_argument("picture_error: pictures differ in size");
   std::vector<PixelPair> pairs;

@@ -164,6 +164,65 @@ TEST_F(PlanetReference, CloudsShadowTheAir) {
   EXPECT_LE(error, 0.02);
 }
 
+// Air with cloud above and below it. The sun map holds both in one texel, as one cloud from the top
+// of the upper to the middle of what they take: the air between them is too dark in the picture.
+// The march has the truth.
+TEST_F(PlanetReference, AirBetweenTwoDecks) {
+  const Slab high(9000, 9500, 30e3, 1e-3), low(1500, 2500, 30e3, 0.02);
+  RenderRequest request = planet_request({&high.source, &low.source});
+  request.settings.width = 16;
+  request.settings.height = 4;
+  request.sun.to_sun = sun_at(40, 120);
+  look(request, 5500, 2, 3);
+  request.camera.eye_m -= 10e3 * kNorth;
+  request.camera.target_m -= 10e3 * kNorth;
+  const HdrImage image = render(request).image, march = exact_picture(request);
+  Quadrature truth(request);
+  truth.steps = 20000;
+  truth.lit = [&](const glm::dvec3& p) {
+    const glm::dvec3 sun = request.sun.to_sun;
+    return std::exp(-1e-3 * high.shade_m(p, sun) - 0.02 * low.shade_m(p, sun));
+  };
+  double worst = 0;
+  int clear = 0;
+  std::vector<PixelPair> pairs;
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 16; ++x) {
+      if (tau_at(march, x, y) > 0) continue;
+      ++clear;
+      const double expected = truth.radiance(pixel_direction(request, x, y)).g;
+      worst = std::max(worst, std::abs(green_at(march, x, y) / expected - 1));
+      pairs.push_back({green_at(image, x, y), expected});
+    }
+  EXPECT_GT(clear, 40);
+  report_accuracy(kSection, "march of air between two decks against quadrature: worst pixel", worst,
+                  3e-3, "1");
+  EXPECT_LE(worst, 3e-3);
+  const double error = relative_rms(pairs);
+  report_accuracy(kSection, "sun map: air between two decks", error, 0.2, "relative rms of green");
+  EXPECT_LE(error, 0.2);
+}
+
+// Under the terrain, under the ellipsoid, in the cloud, on its face, far away; the sun overhead.
+TEST(PlanetMarch, AnEyeInPlacesThatAreNoneSeesFiniteLight) {
+  const Slab slab(1000, 2000, 5000, 0.02);
+  const auto map = ridge_map(0, 800, 5e3, 250);
+  const DressedSource source(slab.source, [&](VolumeInfo& info) { info.surface = map; });
+  for (const double height_m : {400.0, -30.0, 1500.0, 1000.0, 1e9}) {
+    RenderRequest request = planet_request({&source});
+    request.settings.width = 8;
+    request.settings.height = 6;
+    look(request, height_m, height_m > 1e6 ? -90 : 20, height_m > 1e6 ? 0.8 : 80);
+    for (const double elevation_deg : {90.0, 0.0, -18.0}) {
+      request.sun.to_sun = sun_at(elevation_deg);
+      const HdrImage image = march_picture(FinestLevels(request.volumes, 16), request);
+      EXPECT_TRUE(
+          std::ranges::all_of(image.rgb, [](float v) { return std::isfinite(v) && v >= 0; }))
+          << height_m << ' ' << elevation_deg;
+    }
+  }
+}
+
 TEST_F(PlanetReference, TerrainInTheSunAndInItsOwnShadow) {
   const Slab slab(15e3, 16e3, 100, 1e-9);
   const auto map = ridge_map(20e3, 1800, 5e3, 250);
@@ -212,6 +271,30 @@ TEST_F(PlanetReference, IceScattersAsIce) {
   EXPECT_LE(error, 0.02);
   const double apart = picture_error(exact_picture(request_for(none)), truth);
   std::printf("measured: the same without ice: %.2f away\n", apart);
+  EXPECT_GT(apart, 0.05);
+}
+
+// A constant node tells nothing of its ice: the finest levels must read its brick, as a cut does.
+TEST_F(PlanetReference, AConstantVolumeKeepsItsIce) {
+  const FieldSource plain(box(1000, 1000), isotropic(2), [](glm::dvec3) { return 5e-4; });
+  const DressedSource half(
+      plain,
+      [](VolumeInfo& info) {
+        info.channels.push_back({.channel = Channel::kIceExtinction, .name = "ice"});
+      },
+      0.5);
+  RenderRequest request = request_of({&half});
+  request.volumes[0].phase = {};
+  request.sun.to_sun = glm::normalize(glm::dvec3(-0.6, 0.5, 0.3));
+  request.camera = {{0, -1800, 600}, {0, 0, 500}, {0, 0, 1}, 0.7};
+  const HdrImage cut = exact_picture(request);
+  const HdrImage finest = march_picture(FinestLevels(request.volumes, 16), request);
+  request.volumes[0].source = &plain;
+  const double apart =
+      picture_error(march_picture(FinestLevels(request.volumes, 16), request), cut);
+  std::printf("measured: finest levels against the cut %.1e, water alone %.2f\n",
+              picture_error(finest, cut), apart);
+  EXPECT_LE(picture_error(finest, cut), 1e-5);
   EXPECT_GT(apart, 0.05);
 }
 
