@@ -25,6 +25,7 @@ namespace {
 
 // A ray is dropped when it can add no more than this share of what lies behind.
 constexpr float kLeastTransmittance = 1.0f / 8192, kLeastTransmittanceExact = 1e-6f;
+constexpr double kLeastBend_cells = 2e-3;  // of curved coordinates, that a parabola may miss
 constexpr int kPixelBlock = 256;        // per dispatch, so that a slow device is not held for long
 constexpr int kTilesPerDispatch = 512;  // 729 samples each: within the 65535 groups of OpenGL 4.5
 
@@ -43,6 +44,7 @@ class Renderer {
   bool exact() const { return request_.settings.step_voxels == 0.0; }
   bool sky_light() const { return scene_.sky; }
   bool texels8() const;
+  bool parabolas() const;
   std::string defines(bool lit) const;
   void timed(const char* name, const std::function<void()>& work);
   void upload();
@@ -67,6 +69,15 @@ bool Renderer::texels8() const {
   const RenderSettings& s = request_.settings;
   if (s.fetch) return *s.fetch == Fetch::kTexels8;
   return exact() || (!s.step_voxels && s.tolerance < 2e-3);
+}
+
+// Parabolas for the curved coordinates within a leaf: no more than kLeastBend of a cell off.
+double parabola_error_cells(double leaf_rad) {
+  return 0.2 * leaf_rad * leaf_rad;
+}
+bool Renderer::parabolas() const {
+  return scene_.has_shell && !texels8() && !request_.leave_nothing_out &&
+         parabola_error_cells(scene_.widest_leaf_rad) <= kLeastBend_cells;
 }
 
 void Renderer::timed(const char* name, const std::function<void()>& work) {
@@ -99,6 +110,7 @@ std::string Renderer::defines(bool lit) const {
   if (texels8()) define("TEXELS8");
   if (exact()) define("CELL_EXACT");
   if (!s.step_voxels) define("ADAPTIVE");
+  if (parabolas()) define("LEAF_PARABOLA");
   if (sky_light()) define("SKY_LIGHT");
   if (scene_.absorbs) define("ABSORPTION");
   if (scene_.has_ice) define("ICE");
@@ -232,6 +244,9 @@ void Renderer::report() {
       line += c;
     }
   }
+  if (parabolas())
+    report.left_out.push_back("curves of third order within leaves: predicted to move samples by less than " +
+                              std::to_string(parabola_error_cells(scene_.widest_leaf_rad)) + " voxels");
   if (!scene_.has_shell)
     report.left_out.push_back("curved walls: no volume is on a planet's shell");
   if (!scene_.has_box) report.left_out.push_back("flat walls: no volume is in a box");

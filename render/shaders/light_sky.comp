@@ -15,7 +15,7 @@ layout(binding = 0, rgba16f) uniform image3D light_image;
 
 float visible(dvec3 direction) {
   ray_direction = direction;
-  float tau = optical_depth_ahead(60.0);  // beyond it the sky is dark to 1e-5
+  float tau = optical_depth_ahead(40.0);  // beyond it the sky is dark to 4e-4
 #ifdef NEPHO_SINGLE
   return exp(-tau);
 #else

@@ -78,6 +78,7 @@ March march = March(0.0, vec3(0.0), FAR, true);
 // side by side share their faces: what was found at the end of one holds for the next.
 void march_segment(inout Seen seen, float t, float end, bool smooth_) {
   float voxel = cell_length(0.5 * (t + end));
+  begin_segment(t, end);
 #ifdef NEPHO_CELL_EXACT
   const float thickest = 0.05;
   march.fresh = true;
