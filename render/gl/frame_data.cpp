@@ -149,8 +149,9 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
     if (node.kind == NodeKind::kBrick) record.brick_or_constant = first_brick + node.brick;
     if (node.kind == NodeKind::kConstant || node.kind == NodeKind::kBrick) {
       if (shell)
-        scene.widest_leaf_rad = std::max(
-            scene.widest_leaf_rad, 0.5 * std::numbers::pi / info.lattice.nodes(node.key.level())[0]);
+        scene.widest_leaf_rad =
+            std::max(scene.widest_leaf_rad,
+                     0.5 * std::numbers::pi / info.lattice.nodes(node.key.level())[0]);
       record.first_child_or_lit = first_lit + node.lit;
       const auto [i, j, k] = node.key.ijk();
       if (node.seen)

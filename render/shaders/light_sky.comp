@@ -28,9 +28,10 @@ void main() {
 #ifdef NEPHO_GROUND
   load_planet();
 #endif
-  int at = int(gl_GlobalInvocationID.x) + first_tile * 125, tile = at / 125, s = at % 125;
-  if (tile >= lit.length()) return;
-  ivec3 sample_index = 2 * ivec3(s % 5, s / 5 % 5, s / 25);
+  if (gl_GlobalInvocationID.x >= uint(light_samples.length())) return;
+  uint entry = light_samples[gl_GlobalInvocationID.x];
+  int tile = int(entry / 729u);
+  ivec3 sample_index = lit_sample_index(entry);
   ray_start = lit_world(tile, sample_index);
 #ifdef NEPHO_GROUND
   // Over a planet, up is that of the place; a little aside, as samples lie on the corners of cells and
