@@ -159,8 +159,8 @@ LayerSpec default_layer(LayerType type) {
       s.wind_from_rad = 250 * deg, s.extinction_per_m = 0.04;
       break;
     case LayerType::kCirrus:
-      s.coverage = 0.4, s.base_m = 8200, s.top_m = 10000, s.scale_m = 3e3, s.wind_m_per_s = 30;
-      s.wind_from_rad = 270 * deg, s.extinction_per_m = 1e-3;
+      s.coverage = 0.4, s.base_m = 8200, s.top_m = 10000, s.scale_m = 2e3, s.wind_m_per_s = 30;
+      s.wind_from_rad = 270 * deg, s.extinction_per_m = 6e-4;
       break;
   }
   return s;
