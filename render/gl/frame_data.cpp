@@ -9,6 +9,7 @@
 #include "bricks/shell_chart.h"
 #include "core/error.h"
 #include "gl/atlas.h"
+#include "gl/node_grid.h"
 #include "optics/phase_table.h"
 #include "tree/source_verbs.h"
 
@@ -123,13 +124,23 @@ VolumeData make_volume(GpuScene& scene, const BrickSource& source) {
   return data;
 }
 
+std::uint32_t flags_of(const TreeNode& node, const BrickSource& source) {
+  const Lattice& lattice = source.info().lattice;
+  const int level = node.key.level();
+  std::uint32_t flags = std::uint32_t(node.kind);
+  if (node.kind == NodeKind::kInner) flags |= std::uint32_t(lattice.split_axes(level)) << 3;
+  const std::array<int, 3> cell = shifts(lattice, level);
+  for (int a = 0; a < 3; ++a) flags |= std::uint32_t(cell[std::size_t(a)] + 3) << (6 + 5 * a);
+  return flags;
+}
+
 void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
   const auto first_node = std::uint32_t(scene.nodes.size());
   const auto first_brick = std::uint32_t(scene.bricks.size());
   const auto first_lit = std::uint32_t(scene.lit.size());
   scene.lit.resize(first_lit + tree.lit_nodes);
   for (const TreeNode& node : tree.nodes) {
-    NodeRecord record{0, std::uint32_t(node.kind), 0, node.majorant_per_m};
+    NodeRecord record{0, flags_of(node, *tree.source), 0, node.majorant_per_m};
     if (node.kind == NodeKind::kInner) record.first_child_or_lit = first_node + node.first_child;
     if (node.kind == NodeKind::kConstant)
       record.brick_or_constant = std::bit_cast<std::uint32_t>(node.constant_per_m);
@@ -198,6 +209,7 @@ GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
     for (int c = 0; c < 3; ++c) data.albedo[c] = float(1 - volume.co_albedo[c]);
     if (volume.co_albedo != glm::dvec3(0)) scene.absorbs = true;
     add_nodes(scene, forest.volumes[v], int(v));
+    data.first_grid = append_grids(scene.nodes, forest.volumes[v], data.first_node);
     scene.volumes.push_back(data);
   }
   if (request.planet) {

@@ -14,7 +14,7 @@ namespace nepho::gl {
 static_assert(sizeof(NodeRecord) == 16 && sizeof(BrickRecord) == 8 && sizeof(LitRecord) == 24);
 static_assert(offsetof(FrameData, ground_radius_m) == 192 && sizeof(FrameData) == 280);
 static_assert(offsetof(VolumeData, radius_m) == 168 && offsetof(VolumeData, chart) == 208);
-static_assert(offsetof(VolumeData, levels) == 240 && sizeof(VolumeData) == 392);
+static_assert(offsetof(VolumeData, levels) == 240 && sizeof(VolumeData) == 400);
 
 struct GpuScene {
   FrameData frame{};

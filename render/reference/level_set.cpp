@@ -78,6 +78,7 @@ struct FinestLevels::Cache {
 
 FinestLevels::FinestLevels(std::span<const RenderVolume> volumes, double cache_mib)
     : volumes_(volumes.begin(), volumes.end()), cache_(std::make_unique<Cache>()) {
+  for (const RenderVolume& volume : volumes_) tells_ice_.push_back(has_ice(volume.source->info()));
   // A quarter for summaries: there are 8/7 of them for each brick, and they are 30 times smaller.
   const double bytes = cache_mib * 1024 * 1024 / double(kShards);
   cache_->bricks_per_shard = std::size_t(0.75 * bytes / sizeof(LeafBrick)) + 1;
@@ -131,12 +132,13 @@ LevelLeaf FinestLevels::leaf(std::size_t volume, int root, const Index3& finest_
     const bool empty = s.empty && (last || s.children == 0 || s.error_bound_per_m == 0);
     if (empty || (s.constant && s.constant_extinction_per_m == 0))
       return {.key = key, .kind = NodeKind::kEmpty, .constant_per_m = 0, .brick = nullptr};
-    if (s.constant)
+    // Of a constant, the part that is ice is only in bricks.
+    if (s.constant && !tells_ice_[volume])
       return {.key = key,
               .kind = NodeKind::kConstant,
               .constant_per_m = double(s.constant_extinction_per_m),
               .brick = nullptr};
-    if (last || s.error_bound_per_m == 0)
+    if (last || s.error_bound_per_m == 0 || s.constant)
       return {
           .key = key, .kind = NodeKind::kBrick, .constant_per_m = 0, .brick = brick(volume, key)};
   }

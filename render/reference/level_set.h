@@ -81,6 +81,7 @@ class FinestLevels final : public LevelSet {
   std::shared_ptr<const LeafBrick> brick(std::size_t volume, NodeKey key) const;
 
   std::vector<RenderVolume> volumes_;
+  std::vector<char> tells_ice_;
   std::unique_ptr<Cache> cache_;
 };
 

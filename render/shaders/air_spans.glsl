@@ -17,6 +17,7 @@ struct Span {
 #endif
 #ifdef NEPHO_CLOUDS
   vec3 sun0, sun1, sun2;  // across its beam
+  vec3 up0, up1, up2, side0, side1, side2, down0, down1, down2;  // sky light on clouds
 #endif
 };
 Span span;
@@ -24,7 +25,7 @@ float air_enter_m, air_leave_m;            // where the ray is in the air
 float rayleigh_to_eye, aerosol_to_eye;  // phase functions
 
 struct Knot {
-  vec3 k, j, m, sun;
+  vec3 k, j, m, sun, up, side, down;
   vec2 light;  // place in light_table
 };
 Knot air_knot(float t_m) {
@@ -49,6 +50,11 @@ Knot air_knot(float t_m) {
   }
 #ifndef NEPHO_SUN_MAP
   knot.j += knot.m;
+#endif
+#ifdef NEPHO_CLOUDS
+  knot.up = air_light(knot.light, LIGHT_UP);
+  knot.side = air_light(knot.light, LIGHT_SIDE);
+  knot.down = air_light(knot.light, LIGHT_DOWN);
 #endif
   return knot;
 }
@@ -106,6 +112,10 @@ void next_span() {
     float height_m, mu, mu_sun;
     planet_place(t, height_m, mu, mu_sun);
     span.sun0 = span.sun1 = span.sun2 = planet_sun_part(height_m, mu_sun) * vec_of(frame.sun_irradiance);
+    vec2 place = light_place(height_m, mu_sun);
+    span.up0 = span.up1 = span.up2 = air_light(place, LIGHT_UP);
+    span.side0 = span.side1 = span.side2 = air_light(place, LIGHT_SIDE);
+    span.down0 = span.down1 = span.down2 = air_light(place, LIGHT_DOWN);
 #endif
     return;
   }
@@ -117,6 +127,9 @@ void next_span() {
 #endif
 #ifdef NEPHO_CLOUDS
   span.sun0 = span.sun2;
+  span.up0 = span.up2;
+  span.side0 = span.side2;
+  span.down0 = span.down2;
 #endif
   for (int at = first ? 0 : 1; at < 3; ++at) {  // a loop: one copy of the look-ups to compile
     Knot knot = air_knot(t + 0.5 * float(at) * (span.end_m - t));
@@ -139,12 +152,22 @@ void next_span() {
       span.m2 = knot.m;
 #endif
 #ifdef NEPHO_CLOUDS
-    if (at == 0)
+    if (at == 0) {
       span.sun0 = knot.sun;
-    else if (at == 1)
+      span.up0 = knot.up;
+      span.side0 = knot.side;
+      span.down0 = knot.down;
+    } else if (at == 1) {
       span.sun1 = knot.sun;
-    else
+      span.up1 = knot.up;
+      span.side1 = knot.side;
+      span.down1 = knot.down;
+    } else {
       span.sun2 = knot.sun;
+      span.up2 = knot.up;
+      span.side2 = knot.side;
+      span.down2 = knot.down;
+    }
 #endif
   }
 #ifdef NEPHO_SUN_MAP

@@ -48,9 +48,12 @@ struct VolumeData {
   float asymmetry;
   int ice_phase_row;  // of the part that is ice, where the volume tells it apart
   float ice_asymmetry;
+  int first_grid;     // in the node buffer: gl/node_grid.h
+  int pad;
 };
 
-// 16 bytes. Inner: first_child. Leaf: lit = its light tile. See NODE_* for flags.
+// 16 bytes. Inner: first_child. Leaf: lit = its light tile. flags: from bit 0 the kind (NODE_*, 3
+// bits), the axes that its split halves (3), log2 of its sides in finest cells (x, y, z, 5 each).
 struct NodeRecord {
   uint first_child_or_lit;
   uint flags;

@@ -57,6 +57,8 @@ Place place_at(float t_m) {
 }
 
 void main() {
+  load_frame();
+  load_planet();
   ivec2 pixel = first_pixel + ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= frame.width || pixel.y >= frame.height) return;
   vec4 seen = imageLoad(met, pixel);

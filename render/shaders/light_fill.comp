@@ -9,6 +9,7 @@ layout(binding = 0) uniform sampler3D atlas;
 #include "lit_sample.glsl"
 
 void main() {
+  load_frame();
   int at = int(gl_GlobalInvocationID.x) + first_tile * 729, tile = at / 729, s = at % 729;
   if (tile >= lit.length()) return;
   ivec3 sample_index = ivec3(s % 9, s / 9 % 9, s / 81), odd = sample_index & 1;

@@ -24,6 +24,10 @@ float visible(dvec3 direction) {
 }
 
 void main() {
+  load_frame();
+#ifdef NEPHO_GROUND
+  load_planet();
+#endif
   int at = int(gl_GlobalInvocationID.x) + first_tile * 125, tile = at / 125, s = at % 125;
   if (tile >= lit.length()) return;
   ivec3 sample_index = 2 * ivec3(s % 5, s / 5 % 5, s / 25);

@@ -2,11 +2,14 @@
 // scattering, and the sky seen along six directions (interim models: docs/accuracy.md).
 
 // Phase function towards the eye times a^n, per octave: the sun is distant, so once per ray.
-vec3 octave_phase[NEPHO_VOLUMES * NEPHO_OCTAVES];
+// Orders above 0 are grey.
+vec3 first_phase[NEPHO_VOLUMES];
+float octave_phase[NEPHO_VOLUMES * NEPHO_OCTAVES];
 float octave_rate[NEPHO_OCTAVES];  // b^n, once per ray
 #ifdef NEPHO_ICE
 layout(binding = 2) uniform sampler3D ice_atlas;
-vec3 octave_ice[NEPHO_VOLUMES * NEPHO_OCTAVES];  // the same of ice
+vec3 first_ice[NEPHO_VOLUMES];  // the same of ice
+float octave_ice[NEPHO_VOLUMES * NEPHO_OCTAVES];
 #endif
 
 layout(std430, binding = 4) readonly buffer PhaseBuffer { float phase_log[]; };  // rows of 1024 x 3
@@ -31,20 +34,20 @@ float ice_part(int volume, float t_m) {
 #ifdef NEPHO_TEXELS8
   float code = texel8(ice_atlas, at);
 #else
-  float code = textureLod(ice_atlas, (at + 0.5) / vec3(textureSize(ice_atlas, 0)), 0.0).r;
+  float code = textureLod(ice_atlas, (at + 0.5) * per_atlas_texel, 0.0).r;
 #endif
   float ice = walks[volume].ice_offset_per_m + walks[volume].ice_range_per_m * code;
   // Where extinction goes to 0, the brick's own part stands for the limit.
   float most = walks[volume].range_per_m + walks[volume].offset_per_m, least = 1e-5 * most;
   float whole = clamp((walks[volume].ice_range_per_m + walks[volume].ice_offset_per_m) / most, 0.0, 1.0);
-  return clamp((ice + least * whole) / (extinction_at(volume, t_m) + least), 0.0, 1.0);
+  return clamp((ice + least * whole) / (last_extinction[volume] + least), 0.0, 1.0);
 }
 
 void set_ice_octaves(int volume, float one_minus_cos) {
-  octave_ice[volume * NEPHO_OCTAVES] = table_phase(volumes[volume].ice_phase_row, one_minus_cos);
+  first_ice[volume] = table_phase(volumes[volume].ice_phase_row, one_minus_cos);
 #define NEPHO_DO_OCTAVE(n)                \
   octave_ice[volume * NEPHO_OCTAVES + n] = \
-      vec3(octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].ice_asymmetry)));
+      octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].ice_asymmetry));
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
 }
@@ -54,7 +57,7 @@ void set_ice_octaves(int volume, float one_minus_cos) {
 void set_octaves(int volume, float one_minus_cos) {
 #define NEPHO_DO_OCTAVE(n)                    \
   octave_phase[volume * NEPHO_OCTAVES + n] =  \
-      vec3(octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].asymmetry)));
+      octave_scattering(n) * hg_phase(one_minus_cos, octave_asymmetry(n, volumes[volume].asymmetry));
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
 }
@@ -66,7 +69,7 @@ void begin_lights() {
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
 #define NEPHO_DO(v)                                                                              \
-  octave_phase[v * NEPHO_OCTAVES] = table_phase(volumes[v].phase_row, one_minus_cos);            \
+  first_phase[v] = table_phase(volumes[v].phase_row, one_minus_cos);                              \
   set_octaves(v, one_minus_cos);
   NEPHO_EACH_VOLUME
 #undef NEPHO_DO
@@ -80,33 +83,13 @@ void begin_lights() {
 #ifdef NEPHO_GROUND
 // What arrives at the last place asked for: across the sun's beam, and from the sky.
 vec3 sun_light, light_up, light_side, light_down;
-#if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
-// Sky light at both ends of a segment of cloud within a span; linear between them.
-float sky_begin_m, sky_end_m;
-vec3 sky_up[2], sky_side[2], sky_down[2];
-
-void begin_sky_light(float begin_m, float end_m) {
-  sky_begin_m = begin_m;
-  sky_end_m = end_m;
-  for (int end = 0; end < 2; ++end) {
-    float height_m, mu, mu_sun;
-    planet_place(end == 0 ? begin_m : end_m, height_m, mu, mu_sun);
-    vec2 place = light_place(height_m, mu_sun);
-    sky_up[end] = air_light(place, LIGHT_UP);
-    sky_side[end] = air_light(place, LIGHT_SIDE);
-    sky_down[end] = air_light(place, LIGHT_DOWN);
-  }
-}
-#endif
-
 void light_at(float t_m) {
 #if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
   vec3 w = span_weights(t_m);
   sun_light = max(w.x * span.sun0 + w.y * span.sun1 + w.z * span.sun2, vec3(0.0));
-  float u = clamp((t_m - sky_begin_m) / max(sky_end_m - sky_begin_m, 1e-3), 0.0, 1.0);
-  light_up = mix(sky_up[0], sky_up[1], u);
-  light_side = mix(sky_side[0], sky_side[1], u);
-  light_down = mix(sky_down[0], sky_down[1], u);
+  light_up = max(w.x * span.up0 + w.y * span.up1 + w.z * span.up2, vec3(0.0));
+  light_side = max(w.x * span.side0 + w.y * span.side1 + w.z * span.side2, vec3(0.0));
+  light_down = max(w.x * span.down0 + w.y * span.down1 + w.z * span.down2, vec3(0.0));
 #else
   float height_m, mu, mu_sun;
   planet_place(t_m, height_m, mu, mu_sun);
@@ -130,18 +113,24 @@ float sun_part_at(float t_m) {
 // Radiance of one volume at t_m: J / extinction, W m-2 sr-1 nm-1.
 vec3 source_at(int volume, float t_m) {
   vec3 at = walks[volume].light_tile + leaf_cells_at(volume, walks[volume], t_m);
-  vec4 light = textureLod(light_atlas, (at + 0.5) / vec3(textureSize(light_atlas, 0)), 0.0);
+  vec4 light = textureLod(light_atlas, (at + 0.5) * per_light_texel, 0.0);
+  float first = exp(-light.r), higher = 0.0;
 #ifdef NEPHO_ICE
   // k S = (k - k_ice) S_liquid + k_ice S_ice.
-  float ice = ice_part(volume, t_m);
-#define NEPHO_OCTAVE(n) mix(octave_phase[volume * NEPHO_OCTAVES + n], octave_ice[volume * NEPHO_OCTAVES + n], ice)
-#else
-#define NEPHO_OCTAVE(n) octave_phase[volume * NEPHO_OCTAVES + n]
-#endif
-  vec3 scattered = NEPHO_OCTAVE(0) * exp(-light.r);
-#define NEPHO_DO_OCTAVE(n) scattered += NEPHO_OCTAVE(n) * exp(-(octave_rate[n] * light.r));
+  float ice = ice_part(volume, t_m), higher_ice = 0.0;
+#define NEPHO_DO_OCTAVE(n) {                                    \
+  float through = exp(-(octave_rate[n] * light.r));             \
+  higher += octave_phase[volume * NEPHO_OCTAVES + n] * through; \
+  higher_ice += octave_ice[volume * NEPHO_OCTAVES + n] * through; }
   NEPHO_EACH_OCTAVE
 #undef NEPHO_DO_OCTAVE
+  vec3 scattered = mix(first_phase[volume] * first + higher, first_ice[volume] * first + higher_ice, ice);
+#else
+#define NEPHO_DO_OCTAVE(n) higher += octave_phase[volume * NEPHO_OCTAVES + n] * exp(-(octave_rate[n] * light.r));
+  NEPHO_EACH_OCTAVE
+#undef NEPHO_DO_OCTAVE
+  vec3 scattered = first_phase[volume] * first + higher;
+#endif
 #ifdef NEPHO_GROUND
   vec3 radiance = scattered * sun_light;
 #else
@@ -160,11 +149,10 @@ vec3 source_at(int volume, float t_m) {
   return radiance;
 }
 
-// Source of all volumes at t_m, weighted by their extinctions; where there is none, the mean of
-// those that a neighbouring sample could bring in: finite, and continuous as extinction goes to 0.
+// Source of all volumes at t_m, where total_extinction_at was asked last, weighted by their
+// extinctions; where there is none, the mean of those that a neighbouring sample could bring in:
+// finite, and continuous as extinction goes to 0.
 vec3 total_source_at(float t_m) {
-  vec3 sum = vec3(0.0);
-  float weight = 0.0;
 #ifdef NEPHO_GROUND
   light_at(t_m);
 #elif defined(NEPHO_SHELL)
@@ -172,13 +160,19 @@ vec3 total_source_at(float t_m) {
 #else
   sun_part = 1.0;
 #endif
+#if NEPHO_VOLUMES == 1
+  return source_at(0, t_m);
+#else
+  vec3 sum = vec3(0.0);
+  float weight = 0.0;
 #define NEPHO_DO(v)                                                        \
   if (walks[v].kind == NODE_BRICK || walks[v].kind == NODE_CONSTANT) {     \
-    float k = max(extinction_at(v, t_m), 1e-30);                           \
+    float k = max(last_extinction[v], 1e-30);                              \
     sum += k * source_at(v, t_m);                                          \
     weight += k;                                                           \
   }
   NEPHO_EACH_VOLUME
 #undef NEPHO_DO
   return weight > 0.0 ? sum / weight : vec3(0.0);
+#endif
 }

@@ -35,7 +35,7 @@ float extinction_at(int volume, float t_m) {
 #ifdef NEPHO_TEXELS8
   float code = texel8(atlas, at);
 #else
-  float code = textureLod(atlas, (at + 0.5) / vec3(textureSize(atlas, 0)), 0.0).r;
+  float code = textureLod(atlas, (at + 0.5) * per_atlas_texel, 0.0).r;
 #endif
 #ifdef NEPHO_MUTANT_HALF_EXTINCTION
   code *= 0.5;
@@ -43,12 +43,19 @@ float extinction_at(int volume, float t_m) {
   return walks[volume].offset_per_m + walks[volume].range_per_m * code;
 }
 
+// Of each volume, where total_extinction_at was asked last: the source there needs them too.
+float last_extinction[NEPHO_VOLUMES];
+
 float total_extinction_at(float t_m) {
   float sum = 0.0;
 #ifdef NEPHO_MUTANT_GREATEST
-#define NEPHO_DO(v) sum = max(sum, extinction_at(v, t_m));
+#define NEPHO_DO(v)                            \
+  last_extinction[v] = extinction_at(v, t_m);  \
+  sum = max(sum, last_extinction[v]);
 #else
-#define NEPHO_DO(v) sum += extinction_at(v, t_m);
+#define NEPHO_DO(v)                            \
+  last_extinction[v] = extinction_at(v, t_m);  \
+  sum += last_extinction[v];
 #endif
   NEPHO_EACH_VOLUME
 #undef NEPHO_DO
@@ -87,16 +94,27 @@ float begin_walks(out float ground_m) {
   return first;
 }
 
-// Brings every walk into the leaf that holds t_m. Returns where the first of them is left; `empty`
-// where no leaf has extinction, `smooth` where none has a brick.
-float settle_walks(float t_m, out bool empty, out bool smooth_) {
+// Starts what has to go on in a new frame at t_m or before.
+void enter_walks(float t_m) {
+#define NEPHO_DO(v)                                                                             \
+  if ((walks[v].kind == OUTSIDE || walks[v].kind == CROSSING) && walks[v].leave_m <= t_m)       \
+    enter_chart(v, walks[v]);
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
+}
+
+// Brings walks onward that are left at t_m or before, by a leaf each. Returns where the first of them
+// is left, which may be at t_m again; `empty` where no leaf has extinction, `smooth` where none has a
+// brick; `enters` where enter_walks has to be asked first.
+float settle_walks(float t_m, out bool empty, out bool smooth_, out bool enters) {
   float end = FAR;
-  empty = true;
-  smooth_ = true;
-#define NEPHO_DO(v)                                         \
-  while (walks[v].leave_m <= t_m) next_leaf(v, walks[v]);   \
-  end = min(end, walks[v].leave_m);                         \
-  smooth_ = smooth_ && walks[v].kind != NODE_BRICK;         \
+  empty = smooth_ = true;
+  enters = false;
+#define NEPHO_DO(v)                                                                               \
+  if (walks[v].kind < OUTSIDE && walks[v].leave_m <= t_m) next_leaf(v, walks[v]);                 \
+  end = min(end, walks[v].leave_m);                                                               \
+  enters = enters || ((walks[v].kind == OUTSIDE || walks[v].kind == CROSSING) && walks[v].leave_m <= t_m); \
+  smooth_ = smooth_ && walks[v].kind != NODE_BRICK;                                               \
   empty = empty && walks[v].kind != NODE_BRICK && walks[v].kind != NODE_CONSTANT;
   NEPHO_EACH_VOLUME
 #undef NEPHO_DO
@@ -154,7 +172,7 @@ int leaf_sub_steps(int volume, float step_m) {
 #ifdef NEPHO_SHELL
   if (is_shell(volume) && walks[volume].kind == NODE_BRICK)
     return simpson_steps(step_m * walks[volume].stretch, walks[volume].radius.z,
-                         float(volumes[volume].cell_height_m) / walks[volume].per_cell.z);
+                         shell_floats[volume].cell_height_m / walks[volume].per_cell.z);
 #endif
   return 1;
 }
@@ -176,53 +194,72 @@ float cell_end(float t_m, float end_m, out int sub_steps) {
 }
 #endif
 
+// Optical depth within one set of leaves.
+float depth_of_segment(float t, float end, bool smooth_) {
+  float k0 = total_extinction_at(t), tau = 0.0;
+  // Constant extinction is one step.
+  float h = smooth_ ? end - t : NEPHO_SUN_STEP * cell_length(0.5 * (t + end));
+  while (t < end) {
+#ifdef NEPHO_CELL_EXACT
+    int sub_steps = 1;
+    float next = end;
+    if (!smooth_) next = cell_end(t, end, sub_steps);
+#else
+    // Equal steps to the end of the segment: no short last one.
+    const int sub_steps = 1;
+    float next = end - t < 1.5 * h ? end : t + max(h, least_step(t));
+#endif
+    float sub = (next - t) / float(sub_steps);
+    for (int s = 0; s < sub_steps; ++s) {
+      float k_mid = total_extinction_at(t + 0.5 * sub), k1 = total_extinction_at(t + sub);
+      float part = simpson_optical_depth(k0, k_mid, k1, sub);
+      tau += part;
+#ifdef NEPHO_NOTE_DEPTH
+      note_depth(part, t + 0.5 * sub);
+#endif
+      k0 = k1;
+      t += sub;
+    }
+    t = next;
+  }
+  return tau;
+}
+
 // Optical depth from the start to the ground, or to where the ray leaves all charts; done where it
 // is above `most`.
 const float OPAQUE = 65504.0;  // the largest half float
 float optical_depth_ahead(float most) {
   float end_m, t = begin_walks(end_m), tau = 0.0;
-  if (t >= FAR) return 0.0;
-  float leave = 0.0;
   int ended = t < end_m ? 0 : 1;
-  while (leave < FAR && t < end_m && tau <= most) {
-    bool empty, smooth_;
-    leave = settle_walks(t, empty, smooth_);
-    float end = min(leave, end_m);
-    if (leave >= FAR) empty = true;
-    if (!empty) {
-      float k0 = total_extinction_at(t);
-      if (smooth_) {
-        tau += k0 * (end - t);
-#ifdef NEPHO_NOTE_DEPTH
-        note_depth(k0 * (end - t), 0.5 * (t + end));
-#endif
+  // Loops within loops: llvmpipe runs all of a loop's body at every turn, and turns end only when all
+  // rays side by side are through. Entering a chart, empty leaves and marching are apart.
+  while (ended == 0) {
+    enter_walks(t);
+    int inside = 1;
+    while (inside == 1) {
+      bool empty, smooth_, enters;
+      float leave;
+      int looking = 1;
+      while (looking == 1) {
+        leave = settle_walks(t, empty, smooth_, enters);
+        if (empty && !enters && leave < FAR) t = min(max(t, leave), end_m);
+        if (enters || leave >= FAR || t >= end_m || (!empty && leave > t)) looking = 0;
+      }
+      if (leave >= FAR || t >= end_m) {
+        ended = 1;
+        inside = 0;
+      } else if (enters) {
+        inside = 0;
       } else {
-        float h = NEPHO_SUN_STEP * cell_length(0.5 * (t + end));
-        while (t < end) {
-#ifdef NEPHO_CELL_EXACT
-          int sub_steps;
-          float next = cell_end(t, end, sub_steps);
-#else
-          // Equal steps to the end of the segment: no short last one.
-          const int sub_steps = 1;
-          float next = end - t < 1.5 * h ? end : t + max(h, least_step(t));
-#endif
-          float sub = (next - t) / float(sub_steps);
-          for (int s = 0; s < sub_steps; ++s) {
-            float k_mid = total_extinction_at(t + 0.5 * sub), k1 = total_extinction_at(t + sub);
-            tau += simpson_optical_depth(k0, k_mid, k1, sub);
-#ifdef NEPHO_NOTE_DEPTH
-            note_depth(simpson_optical_depth(k0, k_mid, k1, sub), t + 0.5 * sub);
-#endif
-            k0 = k1;
-            t += sub;
-          }
-          t = next;
+        float end = min(leave, end_m);
+        tau += depth_of_segment(t, end, smooth_);
+        t = end;
+        if (t >= end_m || tau > most) {
+          ended = 1;
+          inside = 0;
         }
       }
     }
-    t = end;
-    if (leave >= FAR || t >= end_m || tau > most) ended = 1;
   }
   count_overrun(ended);
   // A level ray in a periodic layer never leaves it.

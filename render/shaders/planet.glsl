@@ -1,6 +1,8 @@
 // The ray of this invocation over a planet: heights and angles along it, in scaled space.
 #include "planet.layout.h"
-layout(std430, binding = 7) readonly buffer PlanetBuffer { PlanetData planet; };
+layout(std430, binding = 7) restrict readonly buffer PlanetBuffer { PlanetData planet_in; };
+PlanetData planet;  // as frame.glsl's copies; set by load_planet()
+void load_planet() { planet = planet_in; }
 
 struct PlanetRay {
   float radius_m;   // of the start, from the centre

@@ -17,42 +17,39 @@ Seen see(out float ground_m) {
   begin_lights();
   float last_m = min(ground_m, FAR);
   // Accounted for up to t; no cloud before `clear`.
-  float t = 0.0, clear = 0.0;
+  float t = 0.0, clear = 0.0, span_end = last_m;
   int ended = 0;
-  // Loops within one: llvmpipe runs what is in branches at every turn, and a span of air costs more
-  // than a leaf.
+  // Loops within loops: llvmpipe runs what is in branches at every turn. A new frame and a span of air
+  // cost most, then a step of cloud, then a leaf.
   while (ended == 0) {
-    bool empty = true, smooth_ = true;
-    float leave = FAR;
-    int looking = 1;
-    while (looking == 1) {
-      leave = settle_walks(clear, empty, smooth_);
-      empty = empty || leave >= FAR;
-      if (empty) clear = min(leave, last_m);
-      if (!empty || clear >= last_m) looking = 0;
-    }
+    enter_walks(clear);
 #ifdef NEPHO_AIR
-    while ((t < clear || t >= span.end_m) && t < last_m && passed(seen) >= frame.least_transmittance) {
-      if (t >= span.end_m) next_span();
-      float next = min(span.end_m, clear);
-      add_air(seen, t, next);
-      t = next;
-    }
-    float span_end = span.end_m;
-#else
-    t = clear;
-    float span_end = FAR;
+    if (t >= span.end_m) next_span();
+    span_end = min(span.end_m, last_m);
 #endif
-    if (!empty && t < last_m && passed(seen) >= frame.least_transmittance) {
-      float stop = min(min(leave, span_end), last_m);
-#if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
-      begin_sky_light(t, stop);
+    int inside = 1;
+    while (inside == 1) {
+      bool empty, smooth_, enters;
+      float leave;
+      int looking = 1;
+      while (looking == 1) {
+        leave = settle_walks(clear, empty, smooth_, enters);
+        march.fresh = march.fresh || empty;
+        if (empty && !enters) clear = min(max(clear, leave), span_end);
+        if (enters || clear >= span_end || (!empty && leave > clear)) looking = 0;
+      }
+#ifdef NEPHO_AIR
+      add_air(seen, t, clear);
 #endif
-      vec3 s0 = total_source_at(t);
-      march_segment(seen, t, stop, smooth_, s0);
-      t = clear = stop;
+      t = clear;
+      if (!enters && t < span_end) {
+        float stop = min(leave, span_end);
+        march_segment(seen, t, stop, smooth_);
+        t = clear = stop;
+      }
+      if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
+      if (enters || ended == 1 || t >= span_end) inside = 0;
     }
-    if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
   }
   count_overrun(ended);
   return seen;

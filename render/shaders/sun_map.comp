@@ -18,6 +18,8 @@ void note_depth(float tau, float t_m) {
 #include "planet.glsl"
 
 void main() {
+  load_frame();
+  load_planet();
   ivec2 at = first_pixel + ivec2(gl_GlobalInvocationID.xy), size = imageSize(map);
   if (at.x >= size.x || at.y >= size.y) return;
   vec2 u = planet.map_range * ((2.0 * vec2(at) + 1.0) / vec2(size) - 1.0);

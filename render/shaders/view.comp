@@ -9,6 +9,8 @@ layout(binding = 1, rgba32f) uniform writeonly image2D met;
 #endif
 uniform ivec2 first_pixel;
 #include "head.glsl"
+vec2 light_tiles;
+vec3 per_light_texel;
 #include "walk.glsl"
 #include "march.glsl"
 #include "camera.glsl"
@@ -60,23 +62,27 @@ void add_step(inout Seen seen, vec3 s0, vec3 s1, float tau, float t, float step_
   seen.optical_depth += tau;
 }
 
-// Halves a step until its optical depth is under `most`: the source is linear in optical depth within
-// a step, and where a voxel is thick it falls off exponentially. T bounds how many steps there are.
-void limit_step(float t, inout float step_m, float k0, inout float k_mid, inout float k1, float most) {
-  while (simpson_optical_depth(k0, k_mid, k1, step_m) > most && step_m > 2.0 * least_step(t)) {
-    step_m *= 0.5;
-    k1 = k_mid;
-    k_mid = total_extinction_at(t + 0.5 * step_m);
-  }
-}
+// Where the march through cloud is: extinction and source at its last place, and the step that is
+// tried next. `fresh` where that place was outside of cloud: the first step then has no length.
+struct March {
+  float k0;
+  vec3 s0;
+  float longest;
+  bool fresh;
+};
+March march = March(0.0, vec3(0.0), FAR, true);
 
-// One segment in which no volume changes its leaf.
-void march_segment(inout Seen seen, float t, float end, bool smooth_, inout vec3 s0) {
-  float k0 = total_extinction_at(t), voxel = cell_length(0.5 * (t + end));
+// One segment in which no volume changes its leaf. A step is halved until its optical depth is under
+// `thickest`: the source is linear in optical depth within a step, and where a voxel is thick it falls
+// off exponentially. What lies behind more of the cloud may be coarser, as less of it is seen. Leaves
+// side by side share their faces: what was found at the end of one holds for the next.
+void march_segment(inout Seen seen, float t, float end, bool smooth_) {
+  float voxel = cell_length(0.5 * (t + end));
 #ifdef NEPHO_CELL_EXACT
   const float thickest = 0.05;
+  march.fresh = true;
 #elif defined(NEPHO_ADAPTIVE)
-  float thickest = clamp(1.6 * sqrt(frame.tolerance), 0.05, 1.0), h = 2.0 * voxel;
+  float thinnest = clamp(1.6 * sqrt(frame.tolerance), 0.05, 1.0), h = 2.0 * voxel;
 #else
   const float thickest = 1.0;
   float h = frame.step_voxels * voxel;
@@ -89,29 +95,38 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_, inout vec3
 #else
     float step_m = end - t < 1.25 * h ? end - t : max(h, least_step(t));
 #endif
-    float k_mid = total_extinction_at(t + 0.5 * step_m), k1 = total_extinction_at(t + step_m);
 #ifdef NEPHO_ADAPTIVE
-    // Simpson against the trapezium: what the step leaves to its shape, as seen from the eye.
-    float doubt = passed(seen) * step_m * abs(k0 - 2.0 * k_mid + k1) * (1.0 / 6.0);
-    if (doubt > 0.6 * frame.tolerance && step_m > 1.01 * voxel) {
-      step_m *= 0.5;
-      k1 = k_mid;
-      k_mid = total_extinction_at(t + 0.5 * step_m);
-    } else {
-      h = doubt < 0.08 * frame.tolerance ? 3.0 * voxel : 2.0 * voxel;
-    }
+    float thickest = min(thinnest * inversesqrt(max(passed(seen), 1.0 / 64.0)), 1.0);
 #endif
-    limit_step(t, step_m, k0, k_mid, k1, thickest);
+    step_m = march.fresh ? 0.0 : min(step_m, march.longest);
     // The last step ends on the wall itself: no remainder by rounding.
     float next_t = end - (t + step_m) < 1e-4 * step_m ? end : t + step_m;
-    vec3 s1 = total_source_at(next_t);
-    add_step(seen, s0, s1, simpson_optical_depth(k0, k_mid, k1, step_m), t, step_m);
-    s0 = s1;
-    k0 = k1;
-    // A float cannot hold a step below its own spacing: then the ray is done with this segment.
-    if (next_t <= t) break;
-    t = next_t;
-    if (passed(seen) < frame.least_transmittance) break;
+    float k_mid = total_extinction_at(t + 0.5 * step_m), k1 = total_extinction_at(next_t);
+    float tau = simpson_optical_depth(march.k0, k_mid, k1, step_m);
+    bool refused = tau > thickest;
+#ifdef NEPHO_ADAPTIVE
+    // Simpson against the trapezium: what the step leaves to its shape, as seen from the eye.
+    float doubt = passed(seen) * step_m * abs(march.k0 - 2.0 * k_mid + k1) * (1.0 / 6.0);
+    refused = refused || (doubt > 0.6 * frame.tolerance && step_m > 1.01 * voxel);
+    h = doubt < 0.08 * frame.tolerance ? 3.0 * voxel : 2.0 * voxel;
+#endif
+    if (refused && step_m > 2.0 * least_step(t)) {
+      march.longest = 0.5 * step_m;
+    } else {
+      vec3 s1 = total_source_at(next_t);
+      if (!march.fresh) add_step(seen, march.s0, s1, tau, t, step_m);
+      // No more than what would be refused were extinction to stay; not where it is about to begin.
+      march.longest = max(2.0 * step_m, 0.9 * thickest / max(k1, 1e-30));
+      if (march.fresh) march.longest = FAR;
+      march.longest = min(march.longest, k1 > 0.0 ? 1.4 * thickest / k1 : FAR);
+      march.s0 = s1;
+      march.k0 = k1;
+      // A float cannot hold a step below its own spacing: then the ray is done with this segment.
+      if (next_t <= t && !march.fresh) break;
+      march.fresh = false;
+      t = next_t;
+      if (passed(seen) < frame.least_transmittance) break;
+    }
   }
 }
 
@@ -121,21 +136,36 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_, inout vec3
 Seen see() {
   Seen seen = Seen(vec3(0.0), 1.0, 0.0);
   float end_m, t = begin_walks(end_m);
-  vec3 s0 = vec3(0.0);
-  float end = 0.0;
   // Before the loop: llvmpipe runs what is in its branches at every turn.
   begin_lights();
   int ended = t < end_m ? 0 : 1;
-  while (end < FAR && t < end_m && seen.transmittance >= frame.least_transmittance) {
-    bool empty, smooth_;
-    end = settle_walks(t, empty, smooth_);
-    float stop = min(end, end_m);
-    if (!empty && end < FAR) {
-      s0 = total_source_at(t);
-      march_segment(seen, t, stop, smooth_, s0);
+  while (ended == 0) {
+    enter_walks(t);
+    int inside = 1;
+    while (inside == 1) {
+      bool empty, smooth_, enters;
+      float leave;
+      int looking = 1;
+      while (looking == 1) {
+        leave = settle_walks(t, empty, smooth_, enters);
+        if (empty) march.fresh = true;
+        if (empty && !enters && leave < FAR) t = min(max(t, leave), end_m);
+        if (enters || leave >= FAR || t >= end_m || (!empty && leave > t)) looking = 0;
+      }
+      if (leave >= FAR || t >= end_m) {
+        ended = 1;
+        inside = 0;
+      } else if (enters) {
+        inside = 0;
+      } else {
+        march_segment(seen, t, min(leave, end_m), smooth_);
+        t = min(leave, end_m);
+        if (t >= end_m || seen.transmittance < frame.least_transmittance) {
+          ended = 1;
+          inside = 0;
+        }
+      }
     }
-    t = stop;
-    if (end >= FAR || t >= end_m || seen.transmittance < frame.least_transmittance) ended = 1;
   }
   count_overrun(ended);
   float sine = float(dot(ray_direction, dvec3(frame.sky_axes[0], frame.sky_axes[1], frame.sky_axes[2])));
@@ -147,6 +177,12 @@ Seen see() {
 #endif
 
 void main() {
+  load_frame();
+#ifdef NEPHO_GROUND
+  load_planet();
+#endif
+  light_tiles = vec2(textureSize(light_atlas, 0).xy / 9);
+  per_light_texel = 1.0 / vec3(textureSize(light_atlas, 0));
   ivec2 pixel = first_pixel + ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= frame.width || pixel.y >= frame.height) return;
   begin_camera_ray(pixel);

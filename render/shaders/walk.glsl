@@ -20,9 +20,9 @@ struct Walk {
   float stretch;     // shell: scaled metres per metre
   float anchor_m;    // where on the ray the frame stands: 0, or the entry into the chart
   int root;
+  uvec4 grid, grid_size;  // of the root: gl/node_grid.h
   // The leaf.
   ivec3 low, high;   // its box in finest cells, high excluded
-  int level;
   uint kind;
   float constant_per_m;
   float range_per_m, offset_per_m;
@@ -40,61 +40,65 @@ struct Walk {
   bool endless;      // level, and out of wraps
 };
 
-const uint OUTSIDE = 4u, GONE = 5u;
+// OUTSIDE and CROSSING: at leave_m the walk goes on in another frame (enter_chart).
+const uint OUTSIDE = 4u, GONE = 5u, CROSSING = 6u;
 
 // The ray of this invocation, world metres.
 dvec3 ray_start, ray_direction;
 
-int child_rank(int volume, int level, ivec3 cell, ivec3 shift_below) {
-  int rank = 0, bit = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    if (splits(volume, level, axis)) {
-      rank |= (cell[axis] >> (3 + shift_below[axis]) & 1) << bit;
-      ++bit;
-    }
-  return rank;
+// Texel of a tile's first sample. Exact up to 2^23 tiles; llvmpipe divides integers one by one.
+vec3 tile_origin(uint slot, vec2 tiles) {
+  float at = float(slot);
+  float row = floor((at + 0.5) / tiles.x), layer = floor((row + 0.5) / tiles.y);
+  return 9.0 * vec3(at - row * tiles.x, row - layer * tiles.y, layer);
 }
 
-vec3 tile_origin(uint slot, ivec3 atlas_size) {
-  uint nx = uint(atlas_size.x) / 9u, ny = uint(atlas_size.y) / 9u;
-  return 9.0 * vec3(slot % nx, slot / nx % ny, slot / (nx * ny));
-}
+uvec4 node_at(uint n) { return nodes[n]; }
+
+ivec3 node_sides(uint flags) { return ivec3(flags >> 6 & 31u, flags >> 11 & 31u, flags >> 16 & 31u); }
 
 // The leaf that holds a finest cell of the walk's root.
 void descend(int volume, inout Walk w, ivec3 cell) {
-  ivec3 cells = ivec3(volumes[volume].cells[0], volumes[volume].cells[1], volumes[volume].cells[2]);
   ivec3 period = ivec3(0);
+#ifdef NEPHO_BOX
+  ivec3 cells = ivec3(volumes[volume].cells[0], volumes[volume].cells[1], volumes[volume].cells[2]);
   if ((volumes[volume].periodic & 1) != 0) period.x = int(floor(float(cell.x) / float(cells.x))) * cells.x;
   if ((volumes[volume].periodic & 2) != 0) period.y = int(floor(float(cell.y) / float(cells.y))) * cells.y;
+#endif
   ivec3 local = cell - period;
   uint at = uint(volumes[volume].first_node + w.root);
-  NodeRecord node = nodes[at];
-  int level = 0;
-  while ((node.flags & 7u) == NODE_INNER) {
-    at = node.first_child_or_lit + uint(child_rank(volume, level, local, cell_shift(volume, level + 1)));
-    node = nodes[at];
-    ++level;
+  ivec3 place = (local >> ivec3(w.grid_size.w & 31u, w.grid_size.w >> 5 & 31u, w.grid_size.w >> 10 & 31u)) - ivec3(w.grid.xyz);
+  ivec3 size = ivec3(w.grid_size.xyz);
+  if (all(greaterThanEqual(place, ivec3(0))) && all(lessThan(place, size))) {
+    int n = (place.z * size.y + place.y) * size.x + place.x;
+    uvec4 four = node_at(w.grid.w + uint(n >> 2));
+    at = (n & 2) == 0 ? ((n & 1) == 0 ? four.x : four.y) : (n & 1) == 0 ? four.z : four.w;
   }
-  w.level = level;
-  w.kind = node.flags & 7u;
-  ivec3 shift = cell_shift(volume, level) + 3;
-  w.low = (local >> shift << shift) + period;
-  w.high = w.low + (ivec3(1) << shift);
+  uvec4 node = node_at(at);
+  while ((node.y & 7u) == NODE_INNER) {
+    ivec3 split = ivec3(node.y >> 3 & 1u, node.y >> 4 & 1u, node.y >> 5 & 1u);
+    ivec3 upper = local >> max(node_sides(node.y) - 1, 0) & split;
+    node = node_at(node.x + uint(upper.x | upper.y << split.x | upper.z << (split.x + split.y)));
+  }
+  w.kind = node.y & 7u;
+  ivec3 side = node_sides(node.y);
+  w.low = (local >> side << side) + period;
+  w.high = w.low + (ivec3(1) << side);
   w.per_cell = 8.0 / vec3(w.high - w.low);
+  w.constant_per_m = w.kind == NODE_CONSTANT ? uintBitsToFloat(node.z) : 0.0;
   if (w.kind == NODE_BRICK) {
-    BrickRecord brick = bricks[node.brick_or_constant];
-    w.range_per_m = brick.range_per_m;
-    w.offset_per_m = brick.offset_per_m;
-    w.tile = tile_origin(node.brick_or_constant, textureSize(atlas, 0));
+    vec2 brick = bricks[node.z];
+    w.range_per_m = brick.x;
+    w.offset_per_m = brick.y;
+    w.tile = tile_origin(node.z, atlas_tiles);
 #ifdef NEPHO_ICE
-    w.ice_range_per_m = ice_bricks[node.brick_or_constant].range_per_m;
-    w.ice_offset_per_m = ice_bricks[node.brick_or_constant].offset_per_m;
+    vec2 ice = ice_bricks[node.z];
+    w.ice_range_per_m = ice.x;
+    w.ice_offset_per_m = ice.y;
 #endif
-  } else {
-    w.constant_per_m = w.kind == NODE_CONSTANT ? uintBitsToFloat(node.brick_or_constant) : 0.0;
   }
 #ifdef NEPHO_LIT
-  if (w.kind != NODE_EMPTY) w.light_tile = tile_origin(node.first_child_or_lit, textureSize(light_atlas, 0));
+  if (w.kind != NODE_EMPTY) w.light_tile = tile_origin(node.x, light_tiles);
 #endif
 }
 
@@ -153,33 +157,48 @@ Walk begin_walk(int volume) {
   return box_begin(volume);
 }
 
+// Goes on in a new frame, at w.leave_m: into the chart, or over an edge of the cube. fp64, and so apart
+// from next_leaf: llvmpipe runs what is in branches at every turn of a loop.
+void enter_chart(int volume, inout Walk w) {
+  float t_m = w.leave_m;
+  bool crosses = w.kind == CROSSING;
+#ifdef NEPHO_SHELL
+  int layer = w.low.z;
+  if (is_shell(volume)) shell_set_face(volume, w, crosses ? w.root : shell_face_at(volume, w, t_m));
+#endif
+  w.grid = node_at(uint(volumes[volume].first_grid + 2 * w.root));
+  w.grid_size = node_at(uint(volumes[volume].first_grid + 2 * w.root + 1));
+  ivec3 cell = w.index + ivec3(floor(cells_at(volume, w, t_m)));
+  ivec3 last = ivec3(volumes[volume].cells[0], volumes[volume].cells[1], volumes[volume].cells[2]) - 1;
+  if ((volumes[volume].periodic & 1) == 0) cell.x = clamp(cell.x, 0, last.x);
+  if ((volumes[volume].periodic & 2) == 0) cell.y = clamp(cell.y, 0, last.y);
+  cell.z = clamp(cell.z, 0, last.z);
+#ifdef NEPHO_SHELL
+  if (crosses) cell.z = layer;
+#endif
+  descend(volume, w, cell);
+  find_leave(volume, w, t_m);
+}
+
 // Leaves the current leaf for the one behind the wall, at w.leave_m.
 void next_leaf(int volume, inout Walk w) {
   float t_m = w.leave_m;
-  if (w.leave_axis < 0) {  // enters the chart, or has nothing more ahead
-    if (w.kind == OUTSIDE) {
-#ifdef NEPHO_SHELL
-      if (is_shell(volume)) shell_set_face(volume, w, shell_face_at(volume, w, t_m));
-#endif
-      ivec3 cell = w.index + ivec3(floor(cells_at(volume, w, t_m)));
-      ivec3 cells = ivec3(volumes[volume].cells[0], volumes[volume].cells[1], volumes[volume].cells[2]);
-      bvec2 wrap = bvec2((volumes[volume].periodic & 1) != 0, (volumes[volume].periodic & 2) != 0);
-      if (!wrap.x) cell.x = clamp(cell.x, 0, cells.x - 1);
-      if (!wrap.y) cell.y = clamp(cell.y, 0, cells.y - 1);
-      cell.z = clamp(cell.z, 0, cells.z - 1);
-      descend(volume, w, cell);
-      find_leave(volume, w, t_m);
-    } else {
-      w.kind = GONE;
-      w.leave_m = FAR;
-    }
-    return;
-  }
+  bool gone = w.leave_axis < 0;
   ivec3 cell = clamp(w.index + ivec3(floor(cells_at(volume, w, t_m))), w.low, w.high - 1);
-  cell[w.leave_axis] = w.leave_up ? w.high[w.leave_axis] : w.low[w.leave_axis] - 1;
-  int count = volumes[volume].cells[w.leave_axis];
-  bool wraps = (volumes[volume].periodic >> w.leave_axis & 1) != 0;
-  if (cell[w.leave_axis] < 0 || cell[w.leave_axis] >= count) {
+  ivec3 beyond = w.leave_up ? w.high : w.low - 1;
+  int count = volumes[volume].cells[0];
+  if (w.leave_axis == 0) {
+    cell.x = beyond.x;
+  } else if (w.leave_axis == 1) {
+    cell.y = beyond.y;
+    count = volumes[volume].cells[1];
+  } else {
+    cell.z = beyond.z;
+    count = volumes[volume].cells[2];
+  }
+  int at = w.leave_axis == 0 ? cell.x : w.leave_axis == 1 ? cell.y : cell.z;
+  if (at < 0 || at >= count) {
+    bool wraps = (volumes[volume].periodic >> max(w.leave_axis, 0) & 1) != 0;
     bool inside = wraps && ++w.wraps < MAX_WRAPS;
 #if defined(NEPHO_BOX) && !defined(NEPHO_LIT)
     if (wraps && w.wraps >= MAX_LEVEL_WRAPS && box_is_level(w)) {
@@ -188,22 +207,24 @@ void next_leaf(int volume, inout Walk w) {
     }
 #endif
 #ifdef NEPHO_SHELL
-    if (is_shell(volume)) {
+    if (is_shell(volume) && !gone) {
       if (w.leave_axis < 2) {
-        cell = shell_cross_face(volume, w, t_m, cell.z);
-        inside = true;
-      } else if (!w.leave_up) {
+        shell_cross_face(w, cell.z);
+        return;
+      }
+      if (!w.leave_up) {
         shell_reenter(volume, w);
         return;
       }
     }
 #endif
-    if (!inside) {
-      w.kind = GONE;
-      w.leave_m = FAR;
-      w.leave_axis = -1;
-      return;
-    }
+    gone = gone || !inside;
+  }
+  if (gone) {
+    w.kind = GONE;
+    w.leave_m = FAR;
+    w.leave_axis = -1;
+    return;
   }
   descend(volume, w, cell);
   find_leave(volume, w, t_m);

@@ -95,8 +95,7 @@ Walk shell_begin(int volume) {
 
 vec3 shell_cells_at(int volume, Walk w, float t_m) {
   float t = (t_m - w.anchor_m) * w.stretch;
-  float per_rad = 1.0 / float(volumes[volume].cell_rad);
-  float per_m = 1.0 / float(volumes[volume].cell_height_m);
+  float per_rad = shell_floats[volume].per_cell_rad, per_m = shell_floats[volume].per_cell_height_m;
   return w.rest + vec3(angle_along_ray(w.radius.x, t, w.radial.x, w.slope.x) * per_rad,
                        angle_along_ray(w.radius.y, t, w.radial.y, w.slope.y) * per_rad,
                        height_along_ray(w.radius.z, t, w.radial.z) * per_m);
@@ -107,7 +106,7 @@ void shell_next_wall(int volume, Walk w, ivec3 low, ivec3 high, float t_m, out f
   wall_m = FAR;
   axis = 0;
   up = true;
-  float per_stretch = 1.0 / w.stretch, cell_rad = float(volumes[volume].cell_rad);
+  float per_stretch = 1.0 / w.stretch, cell_rad = shell_floats[volume].cell_rad;
   float now = (t_m - w.anchor_m) * w.stretch;
   for (int a = 0; a < 2; ++a) {
     bool rises = w.slope[a] > 0.0;
@@ -122,7 +121,7 @@ void shell_next_wall(int volume, Walk w, ivec3 low, ivec3 high, float t_m, out f
       up = rises;
     }
   }
-  float cell_height = float(volumes[volume].cell_height_m), near, far;
+  float cell_height = shell_floats[volume].cell_height_m, near, far;
   bool falls = now < -w.radius.z * w.radial.z;
   if (falls) {
     sphere_wall_distances(w.radius.z, -wall_offset(low.z, w.index.z, w.rest.z, cell_height),
@@ -142,24 +141,24 @@ void shell_next_wall(int volume, Walk w, ivec3 low, ivec3 high, float t_m, out f
   wall_m = wall_m >= FAR ? FAR : max(w.anchor_m + wall_m * per_stretch, t_m);
 }
 
-// Behind a wall u or v at a face's end lies another face; its cell at t_m, in layer k.
-ivec3 shell_cross_face(int volume, inout Walk w, float t_m, int k) {
+// Behind a wall u or v at a face's end lies another face: enter_chart goes on there, in layer k.
+void shell_cross_face(inout Walk w, int k) {
   bool u = w.leave_axis == 0;
   int axis = u ? FACE_U[w.root] : FACE_V[w.root];
   float side = (u ? FACE_U_SIGN[w.root] : FACE_V_SIGN[w.root]) * (w.leave_up ? 1.0 : -1.0);
 #ifdef NEPHO_MUTANT_OPPOSITE_FACE
   side = -side;
 #endif
-  shell_set_face(volume, w, 2 * axis + (side < 0.0 ? 1 : 0));
-  ivec3 cell = w.index + ivec3(floor(shell_cells_at(volume, w, t_m)));
-  int last = volumes[volume].cells[0] - 1;
-  return ivec3(clamp(cell.xy, ivec2(0), ivec2(last)), k);
+  w.root = 2 * axis + (side < 0.0 ? 1 : 0);
+  w.low.z = k;
+  w.kind = CROSSING;
+  w.leave_axis = -1;
 }
 
 // Through the bottom: the shell is met again on the far side, unless the ground is in the way.
 void shell_reenter(int volume, inout Walk w) {
   float near, far;
-  float above = -wall_offset(0, w.index.z, w.rest.z, float(volumes[volume].cell_height_m));
+  float above = -wall_offset(0, w.index.z, w.rest.z, shell_floats[volume].cell_height_m);
   sphere_wall_distances(w.radius.z, above, w.radial.z, near, far);
   w.kind = far < no_hit() ? OUTSIDE : GONE;
   w.leave_m = far < no_hit() ? w.anchor_m + far / w.stretch : FAR;
@@ -170,12 +169,12 @@ float shell_cell_length(int volume, Walk w, float t_m) {
   float t = (t_m - w.anchor_m) * w.stretch;
   float r = w.radius.z + height_along_ray(w.radius.z, t, w.radial.z);
   float mu = clamp((w.radius.z * w.radial.z + t) / r, -1.0, 1.0);
-  vec3 size = vec3(vec2(float(volumes[volume].cell_rad) * r), float(volumes[volume].cell_height_m)) / w.per_cell;
+  vec3 size = vec3(vec2(shell_floats[volume].cell_rad * r), shell_floats[volume].cell_height_m) / w.per_cell;
   return 1.0 / (sqrt(1.0 - mu * mu) / min(size.x, size.y) + abs(mu) / size.z) / w.stretch;
 }
 
 dvec3 shell_world_of(int volume, int root, ivec3 index) {
-  VolumeData v = volumes[volume];
+  VolumeData v = volumes_in[volume];
   double half_turn = 0.5LF * double(v.cells[0]);
   dvec2 tangent;
   for (int slot = 0; slot < 2; ++slot) {
