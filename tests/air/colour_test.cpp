@@ -12,8 +12,8 @@
 namespace nepho::test {
 namespace {
 
-// Absorption cross-section of ozone, m2, from 360 nm in steps of 10 nm: Bogumil et al. 2003 as
-// averaged by Bruneton 2017 (precomputed_atmospheric_scattering, demo.cc).
+// Absorption cross-section of ozone at 233 K, m2, means of 10 nm from 360 nm: Gorshelev et al. 2014
+// (doi:10.5194/amt-7-609-2014), as Bruneton 2017 lists them.
 constexpr std::array kOzone_m2 = {
     1.18e-27,  2.182e-28, 2.818e-28, 6.636e-28, 1.527e-27, 2.763e-27, 5.52e-27,  8.451e-27,
     1.582e-26, 2.316e-26, 3.669e-26, 4.924e-26, 7.752e-26, 9.016e-26, 1.48e-25,  1.602e-25,
