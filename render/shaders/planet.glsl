@@ -64,8 +64,8 @@ void planet_place(float t_m, out float height_m, out float mu, out float mu_sun)
 
 // Part of the sun's disc that the planet leaves free.
 float planet_sun_part(float height_m, float mu_sun) {
-#ifdef NEPHO_MUTANT_SUN_WITHOUT_DISC
-  return sun_above_horizon(float(planet.radius_m), height_m, mu_sun) > 0.5 ? 1.0 : 0.0;
+#ifdef NEPHO_MUTANT_SUN_GONE
+  if (mu_sun < -0.05) return 0.0;
 #endif
   return sun_above_horizon(float(planet.radius_m), height_m, mu_sun);
 }
