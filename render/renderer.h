@@ -29,6 +29,8 @@ struct RenderRequest {
   // is not used. The ground's shape is that of the first volume that has a surface map there.
   std::optional<Planet> planet;
   RenderSettings settings;
+  // For tests: does also what was predicted to change nothing (RenderReport::left_out).
+  bool leave_nothing_out = false;
 };
 
 // Linear HDR, row 0 at the top: radiance r, g, b (W m-2 sr-1 nm-1) and the view optical depth.

@@ -19,7 +19,7 @@ struct AirTable {
 };
 
 struct AirTables {
-  // 256 x 192: optical depth from (mu, height) to the top, which interpolates better than its
+  // 256 x 208: optical depth from (mu, height) to the top, which interpolates better than its
   // exponential; meaningless below the horizon. air_depth_coordinates.
   AirTable depth;
   // The others: 253 x 32, by (mu of the sun, height). air_light_coordinates.

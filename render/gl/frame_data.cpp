@@ -139,6 +139,8 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
   const auto first_brick = std::uint32_t(scene.bricks.size());
   const auto first_lit = std::uint32_t(scene.lit.size());
   scene.lit.resize(first_lit + tree.lit_nodes);
+  const VolumeInfo& info = tree.source->info();
+  const bool shell = info.chart->kind() == ChartKind::kShell;
   for (const TreeNode& node : tree.nodes) {
     NodeRecord record{0, flags_of(node, *tree.source), 0, node.majorant_per_m};
     if (node.kind == NodeKind::kInner) record.first_child_or_lit = first_node + node.first_child;
@@ -146,6 +148,10 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
       record.brick_or_constant = std::bit_cast<std::uint32_t>(node.constant_per_m);
     if (node.kind == NodeKind::kBrick) record.brick_or_constant = first_brick + node.brick;
     if (node.kind == NodeKind::kConstant || node.kind == NodeKind::kBrick) {
+      if (shell)
+        scene.widest_leaf_rad =
+            std::max(scene.widest_leaf_rad,
+                     0.5 * std::numbers::pi / info.lattice.nodes(node.key.level())[0]);
       record.first_child_or_lit = first_lit + node.lit;
       const auto [i, j, k] = node.key.ijk();
       if (node.seen)

@@ -25,6 +25,7 @@ struct GpuScene {
   std::vector<LitRecord> lit;
   std::vector<float> phases;  // rows of 1024 x 3: log of the phase function, 1/sr
   bool has_box = false, has_shell = false, absorbs = false, sky = false, has_ice = false;
+  double widest_leaf_rad = 0;  // of all leaves with extinction on a shell
 };
 
 // What refinement goes by: the request, and what its tiles cost here.

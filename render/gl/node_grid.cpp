@@ -31,7 +31,8 @@ struct Grid {
   std::size_t cells() const { return std::size_t(size[0] * size[1] * size[2]); }
 };
 
-// The finest grid around all leaves with extinction that is not too large; size 0 where there are none.
+// The finest grid around all leaves with extinction that is not too large; size 0 where there are
+// none.
 Grid choose(const VolumeTree& tree, int root) {
   const Lattice& lattice = tree.source->info().lattice;
   constexpr std::int64_t kFar = std::numeric_limits<std::int64_t>::max();
@@ -66,8 +67,9 @@ void fill(const Grid& grid, const Triple& low, const std::array<int, 3>& side, s
   Triple begin, end;
   for (std::size_t a = 0; a < 3; ++a) {
     begin[a] = std::max<std::int64_t>((low[a] >> grid.side[a]) - grid.low[a], 0);
-    end[a] = std::min(((low[a] + (std::int64_t(1) << side[a]) - 1) >> grid.side[a]) - grid.low[a] + 1,
-                      grid.size[a]);
+    end[a] =
+        std::min(((low[a] + (std::int64_t(1) << side[a]) - 1) >> grid.side[a]) - grid.low[a] + 1,
+                 grid.size[a]);
   }
   for (std::int64_t z = begin[2]; z < end[2]; ++z)
     for (std::int64_t y = begin[1]; y < end[1]; ++y)
@@ -90,16 +92,17 @@ int append_grids(std::vector<NodeRecord>& nodes, const VolumeTree& tree, int fir
     for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
       const TreeNode& node = tree.nodes[n];
       const std::array<int, 3> side = sides(info.lattice, node.key.level());
-      if (node.key.root() == root && side[0] >= grid.side[0] && side[1] >= grid.side[1] && side[2] >= grid.side[2])
-        fill(grid, low_of(info.lattice, node.key), side, std::uint32_t(first_node) + std::uint32_t(n),
-             cells);
+      if (node.key.root() == root && side[0] >= grid.side[0] && side[1] >= grid.side[1] &&
+          side[2] >= grid.side[2])
+        fill(grid, low_of(info.lattice, node.key), side,
+             std::uint32_t(first_node) + std::uint32_t(n), cells);
     }
     const std::size_t at = std::size_t(first) + 2 * std::size_t(root);
     nodes[at] = {std::uint32_t(grid.low[0]), std::uint32_t(grid.low[1]), std::uint32_t(grid.low[2]),
                  std::bit_cast<float>(std::uint32_t(nodes.size()))};
-    nodes[at + 1] = {std::uint32_t(grid.size[0]), std::uint32_t(grid.size[1]),
-                     std::uint32_t(grid.size[2]),
-                     std::bit_cast<float>(std::uint32_t(grid.side[0] | grid.side[1] << 5 | grid.side[2] << 10))};
+    nodes[at + 1] = {
+        std::uint32_t(grid.size[0]), std::uint32_t(grid.size[1]), std::uint32_t(grid.size[2]),
+        std::bit_cast<float>(std::uint32_t(grid.side[0] | grid.side[1] << 5 | grid.side[2] << 10))};
     for (std::size_t c = 0; c < cells.size(); c += 4)
       nodes.push_back({cells[c], cells[c + 1], cells[c + 2], std::bit_cast<float>(cells[c + 3])});
   }

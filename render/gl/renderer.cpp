@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "gl/atlas.h"
 #include "gl/frame_data.h"
+#include "gl/light_samples.h"
 #include "gl/object.h"
 #include "gl/planet_passes.h"
 #include "reference/probe.h"
@@ -19,14 +20,18 @@ extern const char* const nepho_shader_view;
 extern const char* const nepho_shader_light_sun;
 extern const char* const nepho_shader_light_sky;
 extern const char* const nepho_shader_light_fill;
+extern const char* const nepho_shader_light_extend;
 
 namespace nepho {
 namespace {
 
 // A ray is dropped when it can add no more than this share of what lies behind.
 constexpr float kLeastTransmittance = 1.0f / 8192, kLeastTransmittanceExact = 1e-6f;
-constexpr int kPixelBlock = 256;        // per dispatch, so that a slow device is not held for long
-constexpr int kTilesPerDispatch = 512;  // 729 samples each: within the 65535 groups of OpenGL 4.5
+constexpr double kLeastBend_cells = 2e-3;  // of curved coordinates, that a parabola may miss
+constexpr int kPixelBlock = 256;      // per dispatch, so that a slow device is not held for long
+constexpr GLuint kSampleBinding = 4;  // the phases' in the view pass
+constexpr std::size_t kTilesPerDispatch =
+    512;  // 729 samples each: within the 65535 groups of OpenGL 4.5
 
 double process_cpu_s() {
   timespec now{};
@@ -43,11 +48,14 @@ class Renderer {
   bool exact() const { return request_.settings.step_voxels == 0.0; }
   bool sky_light() const { return scene_.sky; }
   bool texels8() const;
+  bool parabolas() const;
   std::string defines(bool lit) const;
   void timed(const char* name, const std::function<void()>& work);
   void upload();
   void light();
-  void light_pass(const gl::Program& program, int samples);
+  using SampleList = std::vector<std::uint32_t> (gl::LightSamples::*)(std::size_t,
+                                                                      std::size_t) const;
+  void light_pass(const gl::Program& program, SampleList list, int entries_each = 1);
   void view();
   void read_back();
   void check_overruns() const;
@@ -56,6 +64,7 @@ class Renderer {
   const RenderRequest& request_;
   Forest forest_;
   gl::GpuScene scene_;
+  std::optional<gl::LightSamples> light_samples_;
   std::optional<gl::PlanetPasses> planet_;  // absent: no planet
   std::array<int, 3> atlas_size_{}, light_size_{};
   gl::Texture atlas_, ice_atlas_, light_atlas_, picture_;
@@ -67,6 +76,15 @@ bool Renderer::texels8() const {
   const RenderSettings& s = request_.settings;
   if (s.fetch) return *s.fetch == Fetch::kTexels8;
   return exact() || (!s.step_voxels && s.tolerance < 2e-3);
+}
+
+// Parabolas for the curved coordinates within a leaf: no more than kLeastBend of a cell off.
+double parabola_error_cells(double leaf_rad) {
+  return 0.2 * leaf_rad * leaf_rad;
+}
+bool Renderer::parabolas() const {
+  return scene_.has_shell && !texels8() && !request_.leave_nothing_out &&
+         parabola_error_cells(scene_.widest_leaf_rad) <= kLeastBend_cells;
 }
 
 void Renderer::timed(const char* name, const std::function<void()>& work) {
@@ -99,6 +117,7 @@ std::string Renderer::defines(bool lit) const {
   if (texels8()) define("TEXELS8");
   if (exact()) define("CELL_EXACT");
   if (!s.step_voxels) define("ADAPTIVE");
+  if (parabolas()) define("LEAF_PARABOLA");
   if (sky_light()) define("SKY_LIGHT");
   if (scene_.absorbs) define("ABSORPTION");
   if (scene_.has_ice) define("ICE");
@@ -140,31 +159,43 @@ void Renderer::upload() {
   if (planet_) planet_->upload();
 }
 
-// `samples` invocations for each light tile.
-void Renderer::light_pass(const gl::Program& program, int samples) {
+// One invocation for each sample that `list` names.
+void Renderer::light_pass(const gl::Program& program, SampleList list, int entries_each) {
   glUseProgram(program.id());
-  const GLint first = glGetUniformLocation(program.id(), "first_tile");
   glBindImageTexture(0, light_atlas_.id(), 0, GL_TRUE, 0, GL_READ_WRITE,
                      sky_light() ? GL_RGBA16F : GL_R16F);
-  const int tiles = int(scene_.lit.size());
-  for (int tile = 0; tile < tiles; tile += kTilesPerDispatch) {
-    const int count = std::min(kTilesPerDispatch, tiles - tile);
-    glUniform1i(first, tile);
-    glDispatchCompute(GLuint((count * samples + 63) / 64), 1, 1);
+  for (std::size_t tile = 0; tile < light_samples_->tiles(); tile += kTilesPerDispatch) {
+    const std::size_t count = std::min(kTilesPerDispatch, light_samples_->tiles() - tile);
+    const std::vector<std::uint32_t> samples = ((*light_samples_).*list)(tile, count);
+    if (samples.empty()) continue;
+    const gl::Buffer buffer{std::span<const std::uint32_t>(samples)};
+    buffer.bind(kSampleBinding);
+    const std::size_t invocations = samples.size() / std::size_t(entries_each);
+    glDispatchCompute(GLuint((invocations + 63) / 64), 1, 1);
   }
+  phases_.bind(kSampleBinding);
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void Renderer::light() {
   if (scene_.lit.empty()) return;
+  using gl::LightSamples;
   const std::string switches = defines(false);
-  timed("sun depth",
-        [&] { light_pass(gl::compile("light_sun", nepho_shader_light_sun, switches), 729); });
-  if (!sky_light()) return;
-  timed("sky visibility", [&] {
-    light_pass(gl::compile("light_sky", nepho_shader_light_sky, switches), 125);
-    light_pass(gl::compile("light_fill", nepho_shader_light_fill, switches), 729);
+  timed("sun depth", [&] {
+    light_samples_.emplace(forest_);
+    light_pass(gl::compile("light_sun", nepho_shader_light_sun, switches), &LightSamples::needed);
   });
+  if (sky_light())
+    timed("sky visibility", [&] {
+      light_pass(gl::compile("light_sky", nepho_shader_light_sky, switches), &LightSamples::coarse);
+      light_pass(gl::compile("light_fill", nepho_shader_light_fill, switches),
+                 &LightSamples::needed);
+    });
+  timed("light of clear samples", [&] {
+    light_pass(gl::compile("light_extend", nepho_shader_light_extend, switches),
+               &LightSamples::pairs, 2);
+  });
+  light_samples_.reset();
 }
 
 void Renderer::view() {
@@ -232,6 +263,10 @@ void Renderer::report() {
       line += c;
     }
   }
+  if (parabolas())
+    report.left_out.push_back(
+        "curves of third order within leaves: predicted to move samples by less than " +
+        std::to_string(parabola_error_cells(scene_.widest_leaf_rad)) + " voxels");
   if (!scene_.has_shell)
     report.left_out.push_back("curved walls: no volume is on a planet's shell");
   if (!scene_.has_box) report.left_out.push_back("flat walls: no volume is in a box");

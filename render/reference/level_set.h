@@ -66,17 +66,16 @@ class NoisyCutLevels final : public CutLevels {
 // with the source's own text where it fails.
 class FinestLevels final : public LevelSet {
  public:
-  FinestLevels(std::span<const RenderVolume> volumes, double cache_mib);
+  // With a `cut` (which outlives this): at most `finer` levels below its leaves. A sky of noise
+  // seen from space has nine more, which no picture and no error of one needs.
+  FinestLevels(std::span<const RenderVolume> volumes, double cache_mib, const Forest* cut = nullptr,
+               int finer = 0);
   ~FinestLevels() override;
   std::size_t size() const override { return volumes_.size(); }
   const VolumeInfo& info(std::size_t volume) const override {
     return volumes_[volume].source->info();
   }
-  LevelLeaf leaf(std::size_t volume, int root, const Index3& finest_cell) const override {
-    return leaf_above(volume, root, finest_cell, info(volume).lattice.max_level());
-  }
-  // No finer than `level`.
-  LevelLeaf leaf_above(std::size_t volume, int root, const Index3& finest_cell, int level) const;
+  LevelLeaf leaf(std::size_t volume, int root, const Index3& finest_cell) const override;
   std::uint64_t bricks_read() const;
 
  private:
@@ -85,24 +84,10 @@ class FinestLevels final : public LevelSet {
   std::shared_ptr<const LeafBrick> brick(std::size_t volume, NodeKey key) const;
 
   std::vector<RenderVolume> volumes_;
+  const Forest* cut_;
+  int finer_;
   std::vector<char> tells_ice_;
   std::unique_ptr<Cache> cache_;
-};
-
-// At each place no more than `deeper` levels below a forest's cut: on a planet the finest cells are
-// a thousandth of a pixel over most of the picture, and of no account. Both outlive this.
-class DeeperLevels final : public LevelSet {
- public:
-  DeeperLevels(const Forest& forest, const FinestLevels& finest, int deeper)
-      : forest_(forest), finest_(finest), deeper_(deeper) {}
-  std::size_t size() const override { return finest_.size(); }
-  const VolumeInfo& info(std::size_t volume) const override { return finest_.info(volume); }
-  LevelLeaf leaf(std::size_t volume, int root, const Index3& finest_cell) const override;
-
- private:
-  const Forest& forest_;
-  const FinestLevels& finest_;
-  int deeper_;
 };
 
 }  // namespace nepho

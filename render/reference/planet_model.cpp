@@ -38,7 +38,9 @@ PlanetModel::PlanetModel(const RenderRequest& request, std::shared_ptr<const Air
 PlanetModel::Place PlanetModel::place(const glm::dvec3& point_m) const {
   const glm::dvec3 p = glm::dvec3{1, 1, z_scale_} * point_m;
   const double r_m = glm::length(p);
-  return {r_m - radius_m_, glm::dot(p, to_sun_scaled_) / r_m};
+  const double polar_m = radius_m_ / z_scale_;
+  return {f64::geodetic_height(r_m - radius_m_, radius_m_, polar_m, p.z / r_m),
+          glm::dot(p, to_sun_scaled_) / r_m};
 }
 
 double PlanetModel::mu(const glm::dvec3& point_m, const glm::dvec3& direction) const {

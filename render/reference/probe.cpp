@@ -19,8 +19,9 @@ namespace nepho {
 namespace {
 
 constexpr double kFinestCache_MiB = 256;
-constexpr int kDeeper = 1;  // levels, over a planet
-constexpr std::size_t kBatches = 8;
+// Below the picture's own: what is finer still is left out of the term, and the line says so.
+constexpr int kFinerLevels = 3, kFinerLevelsOfPlanet = 1;
+constexpr std::size_t kBatch = 16;  // probes
 constexpr std::uint64_t kManyBricks = 2000;
 
 // Neighbours on the picture are neighbours on this curve.
@@ -88,6 +89,13 @@ bool holds_everything(const Forest& cut) {
   return true;
 }
 
+// Whether some volume goes on below what the level-of-detail term looks at.
+bool reaches_deeper(const Forest& cut, int finer) {
+  return std::ranges::any_of(cut.volumes, [finer](const VolumeTree& tree) {
+    return tree.finest_level_used + finer < tree.source->info().lattice.max_level();
+  });
+}
+
 double luminance(const glm::dvec3& c) {
   return f64::luminance(c.r, c.g, c.b);
 }
@@ -112,14 +120,12 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
 
   const CutLevels cut_levels(cut);
   const NoisyCutLevels noisy_levels(cut, settings.seed);
-  const FinestLevels finest_levels(request.volumes, kFinestCache_MiB);
+  const int finer = planet ? kFinerLevelsOfPlanet : kFinerLevels;
+  const FinestLevels finest_levels(request.volumes, kFinestCache_MiB, &cut, finer);
   const RayMarch cut_march(cut_levels, request, {}, planet),
       noisy_march(noisy_levels, request, {}, planet);
-  const DeeperLevels deeper_levels(cut, finest_levels, kDeeper);
-  const LevelSet& true_levels =
-      planet ? static_cast<const LevelSet&>(deeper_levels) : finest_levels;
   std::optional<RayMarch> finest_march;
-  if (!holds_everything(cut)) finest_march.emplace(true_levels, request, MarchSettings{}, planet);
+  if (!holds_everything(cut)) finest_march.emplace(finest_levels, request, MarchSettings{}, planet);
   const int octaves = settings.light == Light::kOctaves ? settings.octaves : 1;
 
   // The smallest of the terms: over a planet, where rays are long, a quarter of the probes.
@@ -143,7 +149,7 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
 
   // In batches, each over all of the picture, until many bricks were read: a planet that is worked
   // out as it is read has no end of them.
-  const std::size_t batches = planet ? kBatches : 1;
+  const std::size_t batches = planet ? std::max<std::size_t>(pixels.size() / kBatch, 1) : 1;
   std::size_t marched = 0;
   for (; finest_march && marched < batches && finest_levels.bricks_read() < kManyBricks; ++marched)
     tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
@@ -167,6 +173,9 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   estimate.light_model = relative_rms(light_model);
   estimate.light_model_basis =
       planet ? "table, slabs; all terms over the whole picture" : "table, slabs";
+  if (reaches_deeper(cut, finer))
+    estimate.light_model_basis += "; level of detail against " + std::to_string(finer) +
+                                  (finer > 1 ? " finer levels" : " finer level");
   return estimate;
 }
 

@@ -13,8 +13,8 @@ namespace nepho {
 // a planet, of all pixels but those on the sun's disc, as its air and ground are the picture too.
 // Each is marched again by the CPU (ray_march.h), exactly:
 //   integration       picture              against the same bricks
-//   level of detail   the finest bricks    against these bricks (over a planet: a level deeper,
-//                     and on fewer probes where that reads thousands of bricks)
+//   level of detail   finer bricks         against these bricks: up to three levels deeper, over a
+//                     planet one, and there on fewer probes where that reads thousands of bricks
 //   quantisation      these bricks + noise against these bricks (uniform, +-1/2 step; over a planet
 //                     on a quarter of the probes)
 //   light model       a table by optical depth and scattering angle, measured on slabs: of the

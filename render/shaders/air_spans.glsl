@@ -17,7 +17,7 @@ struct Span {
 #endif
 #ifdef NEPHO_CLOUDS
   vec3 sun0, sun1, sun2;  // across its beam
-  vec3 up0, up1, up2, side0, side1, side2, down0, down1, down2;  // sky light on clouds
+  vec3 up0, up2, side0, side2, down0, down2;  // sky light on clouds, linear
 #endif
 };
 Span span;
@@ -25,7 +25,7 @@ float air_enter_m, air_leave_m;            // where the ray is in the air
 float rayleigh_to_eye, aerosol_to_eye;  // phase functions
 
 struct Knot {
-  vec3 k, j, m, sun, up, side, down;
+  vec3 k, j, m, sun;
   vec2 light;  // place in light_table
 };
 Knot air_knot(float t_m) {
@@ -50,11 +50,6 @@ Knot air_knot(float t_m) {
   }
 #ifndef NEPHO_SUN_MAP
   knot.j += knot.m;
-#endif
-#ifdef NEPHO_CLOUDS
-  knot.up = air_light(knot.light, LIGHT_UP);
-  knot.side = air_light(knot.light, LIGHT_SIDE);
-  knot.down = air_light(knot.light, LIGHT_DOWN);
 #endif
   return knot;
 }
@@ -113,9 +108,9 @@ void next_span() {
     planet_place(t, height_m, mu, mu_sun);
     span.sun0 = span.sun1 = span.sun2 = planet_sun_part(height_m, mu_sun) * vec_of(frame.sun_irradiance);
     vec2 place = light_place(height_m, mu_sun);
-    span.up0 = span.up1 = span.up2 = air_light(place, LIGHT_UP);
-    span.side0 = span.side1 = span.side2 = air_light(place, LIGHT_SIDE);
-    span.down0 = span.down1 = span.down2 = air_light(place, LIGHT_DOWN);
+    span.up0 = span.up2 = air_light(place, LIGHT_UP);
+    span.side0 = span.side2 = air_light(place, LIGHT_SIDE);
+    span.down0 = span.down2 = air_light(place, LIGHT_DOWN);
 #endif
     return;
   }
@@ -131,6 +126,7 @@ void next_span() {
   span.side0 = span.side2;
   span.down0 = span.down2;
 #endif
+  vec2 last_light;
   for (int at = first ? 0 : 1; at < 3; ++at) {  // a loop: one copy of the look-ups to compile
     Knot knot = air_knot(t + 0.5 * float(at) * (span.end_m - t));
     if (at == 0) {
@@ -152,24 +148,26 @@ void next_span() {
       span.m2 = knot.m;
 #endif
 #ifdef NEPHO_CLOUDS
-    if (at == 0) {
+    if (at == 0)
       span.sun0 = knot.sun;
-      span.up0 = knot.up;
-      span.side0 = knot.side;
-      span.down0 = knot.down;
-    } else if (at == 1) {
+    else if (at == 1)
       span.sun1 = knot.sun;
-      span.up1 = knot.up;
-      span.side1 = knot.side;
-      span.down1 = knot.down;
-    } else {
+    else
       span.sun2 = knot.sun;
-      span.up2 = knot.up;
-      span.side2 = knot.side;
-      span.down2 = knot.down;
-    }
+    last_light = knot.light;
 #endif
   }
+#ifdef NEPHO_CLOUDS
+  // Of its far end; the first span is short.
+  span.up2 = air_light(last_light, LIGHT_UP);
+  span.side2 = air_light(last_light, LIGHT_SIDE);
+  span.down2 = air_light(last_light, LIGHT_DOWN);
+  if (first) {
+    span.up0 = span.up2;
+    span.side0 = span.side2;
+    span.down0 = span.down2;
+  }
+#endif
 #ifdef NEPHO_SUN_MAP
   span.lit = lit_mean(t, span.end_m - t);
 #endif

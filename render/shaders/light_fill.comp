@@ -10,9 +10,10 @@ layout(binding = 0) uniform sampler3D atlas;
 
 void main() {
   load_frame();
-  int at = int(gl_GlobalInvocationID.x) + first_tile * 729, tile = at / 729, s = at % 729;
-  if (tile >= lit.length()) return;
-  ivec3 sample_index = ivec3(s % 9, s / 9 % 9, s / 81), odd = sample_index & 1;
+  if (gl_GlobalInvocationID.x >= uint(light_samples.length())) return;
+  uint entry = light_samples[gl_GlobalInvocationID.x];
+  int tile = int(entry / 729u);
+  ivec3 sample_index = lit_sample_index(entry), odd = sample_index & 1;
   if (odd == ivec3(0)) return;
   vec3 sum = vec3(0.0);
   for (int corner = 0; corner < 8; ++corner) {

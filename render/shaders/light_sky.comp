@@ -15,7 +15,7 @@ layout(binding = 0, rgba16f) uniform image3D light_image;
 
 float visible(dvec3 direction) {
   ray_direction = direction;
-  float tau = optical_depth_ahead(60.0);  // beyond it the sky is dark to 1e-5
+  float tau = optical_depth_ahead(40.0);  // beyond it the sky is dark to 4e-4
 #ifdef NEPHO_SINGLE
   return exp(-tau);
 #else
@@ -28,9 +28,10 @@ void main() {
 #ifdef NEPHO_GROUND
   load_planet();
 #endif
-  int at = int(gl_GlobalInvocationID.x) + first_tile * 125, tile = at / 125, s = at % 125;
-  if (tile >= lit.length()) return;
-  ivec3 sample_index = 2 * ivec3(s % 5, s / 5 % 5, s / 25);
+  if (gl_GlobalInvocationID.x >= uint(light_samples.length())) return;
+  uint entry = light_samples[gl_GlobalInvocationID.x];
+  int tile = int(entry / 729u);
+  ivec3 sample_index = lit_sample_index(entry);
   ray_start = lit_world(tile, sample_index);
 #ifdef NEPHO_GROUND
   // Over a planet, up is that of the place; a little aside, as samples lie on the corners of cells and

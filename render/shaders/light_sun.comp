@@ -11,9 +11,10 @@ layout(binding = 0, NEPHO_LIGHT_FORMAT) uniform writeonly image3D light_image;
 
 void main() {
   load_frame();
-  int at = int(gl_GlobalInvocationID.x) + first_tile * 729, tile = at / 729, s = at % 729;
-  if (tile >= lit.length()) return;
-  ivec3 sample_index = ivec3(s % 9, s / 9 % 9, s / 81);
+  if (gl_GlobalInvocationID.x >= uint(light_samples.length())) return;
+  uint entry = light_samples[gl_GlobalInvocationID.x];
+  int tile = int(entry / 729u);
+  ivec3 sample_index = lit_sample_index(entry);
   ray_start = lit_world(tile, sample_index);
   ray_direction = vec_of(frame.to_sun);
   float tau = optical_depth_ahead(1e4);

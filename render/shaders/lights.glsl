@@ -87,9 +87,10 @@ void light_at(float t_m) {
 #if defined(NEPHO_AIR) && defined(NEPHO_CLOUDS)
   vec3 w = span_weights(t_m);
   sun_light = max(w.x * span.sun0 + w.y * span.sun1 + w.z * span.sun2, vec3(0.0));
-  light_up = max(w.x * span.up0 + w.y * span.up1 + w.z * span.up2, vec3(0.0));
-  light_side = max(w.x * span.side0 + w.y * span.side1 + w.z * span.side2, vec3(0.0));
-  light_down = max(w.x * span.down0 + w.y * span.down1 + w.z * span.down2, vec3(0.0));
+  float u = w.z + 0.5 * w.y;  // the part of the span that is behind
+  light_up = mix(span.up0, span.up2, u);
+  light_side = mix(span.side0, span.side2, u);
+  light_down = mix(span.down0, span.down2, u);
 #else
   float height_m, mu, mu_sun;
   planet_place(t_m, height_m, mu, mu_sun);

@@ -1,6 +1,12 @@
 // The passes that fill the light tiles: one invocation a sample.
 layout(std430, binding = 5) readonly buffer LitBuffer { LitRecord lit[]; };
-uniform int first_tile;
+// 729 tile + sample, for this pass (gl/light_samples.h). The view pass has its phases at this binding.
+layout(std430, binding = 4) restrict readonly buffer SampleBuffer { uint light_samples[]; };
+
+ivec3 lit_sample_index(uint entry) {
+  int s = int(entry % 729u);
+  return ivec3(s % 9, s / 9 % 9, s / 81);
+}
 
 ivec3 lit_texel(int tile, ivec3 sample_index) {
   return ivec3(tile_origin(uint(tile), vec2(LIGHT_ATLAS_SIZE.xy / 9))) + sample_index;

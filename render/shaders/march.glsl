@@ -194,8 +194,15 @@ float cell_end(float t_m, float end_m, out int sub_steps) {
 }
 #endif
 
+void begin_segment(float begin_m, float end_m) {
+#define NEPHO_DO(v) begin_leaf_segment(v, walks[v], begin_m, end_m);
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
+}
+
 // Optical depth within one set of leaves.
 float depth_of_segment(float t, float end, bool smooth_) {
+  begin_segment(t, end);
   float k0 = total_extinction_at(t), tau = 0.0;
   // Constant extinction is one step.
   float h = smooth_ ? end - t : NEPHO_SUN_STEP * cell_length(0.5 * (t + end));

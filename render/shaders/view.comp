@@ -78,6 +78,7 @@ March march = March(0.0, vec3(0.0), FAR, true);
 // side by side share their faces: what was found at the end of one holds for the next.
 void march_segment(inout Seen seen, float t, float end, bool smooth_) {
   float voxel = cell_length(0.5 * (t + end));
+  begin_segment(t, end);
 #ifdef NEPHO_CELL_EXACT
   const float thickest = 0.05;
   march.fresh = true;
@@ -96,7 +97,7 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
     float step_m = end - t < 1.25 * h ? end - t : max(h, least_step(t));
 #endif
 #ifdef NEPHO_ADAPTIVE
-    float thickest = min(thinnest * inversesqrt(max(passed(seen), 1.0 / 64.0)), 1.0);
+    float thickest = min(thinnest * clamp(0.7 * inversesqrt(max(passed(seen), 1e-9)), 1.0, 8.0), 1.0);
 #endif
     step_m = march.fresh ? 0.0 : min(step_m, march.longest);
     // The last step ends on the wall itself: no remainder by rounding.
@@ -116,7 +117,7 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
       vec3 s1 = total_source_at(next_t);
       if (!march.fresh) add_step(seen, march.s0, s1, tau, t, step_m);
       // No more than what would be refused were extinction to stay; not where it is about to begin.
-      march.longest = max(2.0 * step_m, 0.9 * thickest / max(k1, 1e-30));
+      march.longest = 2.0 * step_m;
       if (march.fresh) march.longest = FAR;
       march.longest = min(march.longest, k1 > 0.0 ? 1.4 * thickest / k1 : FAR);
       march.s0 = s1;

@@ -36,6 +36,10 @@ struct Walk {
   float leave_m;
   int leave_axis;    // 0 x, 1 y, 2 z; -1: the start of the chart
   bool leave_up;
+#ifdef NEPHO_LEAF_PARABOLA
+  float segment_m;
+  vec3 place, place_rise, place_bend;
+#endif
   int wraps;
   bool endless;      // level, and out of wraps
 };
@@ -128,9 +132,34 @@ vec3 cells_at(int volume, Walk w, float t_m) {
   return w.rest + w.slope * (t_m - w.anchor_m);
 }
 
+vec3 curved_leaf_cells_at(int volume, Walk w, float t_m) {
+  return (vec3(w.index - w.low) + cells_at(volume, w, t_m)) * w.per_cell;
+}
+
 // Position in the leaf's own cells, 0..8.
 vec3 leaf_cells_at(int volume, Walk w, float t_m) {
-  return clamp((vec3(w.index - w.low) + cells_at(volume, w, t_m)) * w.per_cell, 0.0, 8.0);
+#ifdef NEPHO_LEAF_PARABOLA
+  float u = t_m - w.segment_m;
+  return clamp(w.place + u * (w.place_rise + u * w.place_bend), 0.0, 8.0);
+#else
+  return clamp(curved_leaf_cells_at(volume, w, t_m), 0.0, 8.0);
+#endif
+}
+
+// Before places in the leaf are asked for, between two distances. A parabola through three of them
+// stands for the curved coordinates: 0.2 angle^2 of a cell off, for a leaf that wide in rad (the third
+// derivatives of angle and height along a ray, times u (u - 1/2) (u - 1) / 6).
+void begin_leaf_segment(int volume, inout Walk w, float begin_m, float end_m) {
+#ifdef NEPHO_LEAF_PARABOLA
+  float length_m = max(end_m - begin_m, 1e-3);
+  vec3 a = curved_leaf_cells_at(volume, w, begin_m);
+  vec3 b = curved_leaf_cells_at(volume, w, begin_m + 0.5 * length_m);
+  vec3 c = curved_leaf_cells_at(volume, w, begin_m + length_m);
+  w.segment_m = begin_m;
+  w.place = a;
+  w.place_rise = (4.0 * b - 3.0 * a - c) / length_m;
+  w.place_bend = 2.0 * (a - 2.0 * b + c) / (length_m * length_m);
+#endif
 }
 
 // The next wall of the box [low, high) after t_m.

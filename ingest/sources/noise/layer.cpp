@@ -124,17 +124,18 @@ double surplus(const Layer& layer, double threshold) {
 }
 
 // A column is cloudy where its most favourable height is, and thin edges count for nothing. How far
-// that moves the threshold from the one of a plain field: measured (tests/noise, coverage).
+// that moves the threshold from the one of a plain field: measured with the types' own extinction
+// (tests/noise, Coverage).
 double column_surplus(LayerType type) {
   switch (type) {
     case LayerType::kStratus:
-      return 0.0;
+      return -0.01;
     case LayerType::kStratocumulus:
-      return 0.0;
+      return -0.09;
     case LayerType::kCumulus:
-      return 0.0;
+      return 0.07;
     case LayerType::kCirrus:
-      return 0.0;
+      return -0.26;
   }
   return 0;
 }
@@ -159,8 +160,8 @@ LayerSpec default_layer(LayerType type) {
       s.wind_from_rad = 250 * deg, s.extinction_per_m = 0.04;
       break;
     case LayerType::kCirrus:
-      s.coverage = 0.4, s.base_m = 8200, s.top_m = 10000, s.scale_m = 3e3, s.wind_m_per_s = 30;
-      s.wind_from_rad = 270 * deg, s.extinction_per_m = 1e-3;
+      s.coverage = 0.4, s.base_m = 8200, s.top_m = 10000, s.scale_m = 2e3, s.wind_m_per_s = 30;
+      s.wind_from_rad = 270 * deg, s.extinction_per_m = 6e-4;
       break;
   }
   return s;

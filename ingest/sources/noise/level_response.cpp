@@ -74,6 +74,9 @@ LevelResponse::LevelResponse(const Layer& layer, const ShellChart& chart, const 
     weights_.push_back(w);
     left_out += (1 - w * w) * octave.amplitude * octave.amplitude;
   }
+#ifdef NEPHO_MUTANT_CLOSURE
+  left_out = 0;
+#endif
   fill(layer, chart, lattice, level, std::sqrt(std::max(0.0, left_out)));
 }
 
@@ -83,6 +86,11 @@ void LevelResponse::fill(const Layer& layer, const ShellChart& chart, const Latt
   const std::int64_t ratio = finest[2] / cells[2];
   const double step_m = chart.thickness_m() / finest[2];
   // A sample's hat reaches over the finest layers less than `ratio` away.
+#ifdef NEPHO_MUTANT_DRIFT
+  const double drift = std::pow(1.02, lattice.max_level() - level);
+#else
+  constexpr double drift = 1;
+#endif
   const auto inside = [&](std::int64_t k) {
     return k >= 0 && k <= std::int64_t(finest[2]) &&
            layer.profile(layer.part(chart.bottom_m() + double(k) * step_m)) > 0;
@@ -133,7 +141,7 @@ void LevelResponse::fill(const Layer& layer, const ShellChart& chart, const Latt
         mean += part.weight * m.mean;
         square += part.weight * part.profile * m.square;
       }
-      mean_.push_back(mean / total);
+      mean_.push_back(drift * mean / total);
       square_.push_back(square / total);
     }
     mean_[row.begin] = 0, square_[row.begin] = 0;

@@ -70,10 +70,10 @@ std::vector<LayerSpec> read_layers(Parameters& p, const SourceRequest& request, 
 // A sky of a whole planet: less of each than where it is the weather of the day.
 std::vector<LayerSpec> default_sky(int seed) {
   std::vector<LayerSpec> layers;
-  const std::pair<LayerType, double> parts[] = {{LayerType::kCumulus, 0.14},
-                                                {LayerType::kStratocumulus, 0.14},
+  const std::pair<LayerType, double> parts[] = {{LayerType::kCumulus, 0.13},
+                                                {LayerType::kStratocumulus, 0.12},
                                                 {LayerType::kStratus, 0.10},
-                                                {LayerType::kCirrus, 0.22}};
+                                                {LayerType::kCirrus, 0.16}};
   for (const auto& [type, coverage] : parts) {
     layers.push_back(default_layer(type));
     layers.back().coverage = coverage;
