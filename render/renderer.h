@@ -40,8 +40,8 @@ struct HdrImage {
   std::vector<float> optical_depth;  // 1 per pixel
 };
 
-// Each: rms over pixels with optical depth > 0.01 of the luminance difference, over those pixels'
-// mean luminance. Negative: not measured.
+// Each: rms over pixels with optical depth > 0.01 (over a planet: over all, but for the sun's disc)
+// of the luminance difference, over those pixels' mean luminance. Negative: not measured.
 struct ErrorEstimate {
   double integration = -1, level_of_detail = -1, quantisation = -1, light_model = -1;
   int probe_pixels = 0;           // on which the first three were measured

@@ -57,15 +57,19 @@ struct Sky {
 };
 
 // Clear air around a planet, by altitude h over its ellipsoid. Wavelengths 650, 550, 450 nm.
-// Defaults: the Earth, constants of Bruneton 2017 (precomputed_atmospheric_scattering, demo.cc).
+// Defaults: the Earth, constants of Bruneton 2017 (precomputed_atmospheric_scattering, demo.cc),
+// but for two. Ozone absorbs most at 600 nm, between two of the wavelengths: in red and green it
+// counts with its mean over what the display's primaries stand for, or twilight is purple, not blue
+// (tests/air/colour_test.cpp). Air ends at 100 km, not 60: past -6 degrees the sun lights what is
+// higher.
 struct Air {
   glm::dvec3 rayleigh_per_m{6.9500e-6, 1.35580e-5, 3.02546e-5};  // at h = 0
   double rayleigh_scale_m = 8000;
   glm::dvec3 aerosol_extinction_per_m{4.44e-6};  // at h = 0
   double aerosol_albedo = 0.9, aerosol_asymmetry = 0.8, aerosol_scale_m = 1200;
-  glm::dvec3 ozone_per_m{1.2027e-6, 1.8809e-6, 1.2446e-7};              // absorption at the peak
+  glm::dvec3 ozone_per_m{2.41e-6, 1.81e-6, 1.2446e-7};                  // absorption at the peak
   double ozone_low_m = 10e3, ozone_peak_m = 25e3, ozone_high_m = 40e3;  // a tent
-  double top_m = 60e3;                                                  // none above
+  double top_m = 100e3;                                                 // none above
 };
 
 // What a ray meets at the planet's surface: land that scatters evenly, water with the sun's glint.

@@ -33,6 +33,9 @@ glm::dvec3 amounts_m(const Air& air, const AirPath& path, double u0_m, double u1
 }  // namespace
 
 AirPath::AirPath(double radius_m, double height_m, double mu) : radius_m_(radius_m) {
+#if defined(NEPHO_MUTANT_FLAT_AIR)
+  radius_m_ = radius_m *= 2;
+#endif
   const double r_m = radius_m + height_m;
   const double sine = std::sqrt(std::max(0.0, (1 - mu) * (1 + mu)));
   start_m_ = r_m * mu;

@@ -24,7 +24,7 @@ constexpr int kSuns = 64, kHeights = 32;
 // Texels of the tables between two suns: light falls off by half an e-fold from one to the next in
 // twilight, and shaders interpolate linearly.
 constexpr int kBetween = 4;
-constexpr int kDepthWidth = 256, kDepthHeight = 192;
+constexpr int kDepthWidth = 256, kDepthHeight = 208;
 constexpr int kSteepNodes = 3, kSideNodes = 8, kAzimuths = 6, kPanelNodes = 3;
 constexpr double kSteep = std::numbers::sqrt2 / 2;  // 45 degrees
 
@@ -86,6 +86,9 @@ class Solver {
     for (std::size_t f = 0; f < fields_.size(); ++f)
       fields_[f] = closed(first[f], second[f], kept_[f / kSuns]);
     set_light();
+#if defined(NEPHO_MUTANT_TABLE)
+    for (float& v : tables_.NEPHO_MUTANT_TABLE.rgb) v *= NEPHO_MUTANT_FACTOR;
+#endif
     set_sky();
   }
 

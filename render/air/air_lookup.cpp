@@ -40,6 +40,9 @@ AirDensity air_density(const Air& air, double height_m) {
   if (height_m > air.top_m) return density;
   density.rayleigh_per_m =
       air.rayleigh_per_m * f64::air_exponential(height_m, air.rayleigh_scale_m);
+#if defined(NEPHO_MUTANT_HALF_AIR)
+  density.rayleigh_per_m *= 0.5;
+#endif
   const glm::dvec3 aerosol =
       air.aerosol_extinction_per_m * f64::air_exponential(height_m, air.aerosol_scale_m);
   density.aerosol_per_m = air.aerosol_albedo * aerosol;

@@ -19,7 +19,7 @@ struct AirTable {
 };
 
 struct AirTables {
-  // 256 x 192: optical depth from (mu, height) to the top, which interpolates better than its
+  // 256 x 208: optical depth from (mu, height) to the top, which interpolates better than its
   // exponential; meaningless below the horizon. air_depth_coordinates.
   AirTable depth;
   // The others: 253 x 32, by (mu of the sun, height). air_light_coordinates.
@@ -38,7 +38,7 @@ AirTables make_air_tables(const Air& air, double radius_m, const glm::dvec3& gro
 
 // The same quantities without tables, by quadrature in double: for tests and the reference march.
 // Optical depth, r g b, along a straight ray in a spherical planet's air: from `height_m` with
-// zenith cosine mu, over `length_m` (or to the top of the air); relative error 1e-6.
+// zenith cosine mu, over `length_m` (or to the top of the air); transmittance within 1e-6.
 glm::dvec3 air_optical_depth(const Air& air, double radius_m, double height_m, double mu,
                              double length_m);
 

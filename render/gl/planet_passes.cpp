@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "reference/surface.h"
+
 extern const char* const nepho_shader_ground;
 extern const char* const nepho_shader_sun_map;
 
@@ -65,23 +67,15 @@ std::string PlanetPasses::defines() const {
   return text;
 }
 
-// Of what the surface map shows; of water where there is none.
-glm::dvec3 PlanetPasses::mean_albedo() const {
-  const GroundLook& look = request_.planet->ground;
-  if (!scene_.terrain) return look.water_albedo;
-  double water = 0;
-  for (const float w : scene_.surface->water)
-    water += double(w) / double(scene_.surface->water.size());
-  return glm::mix(look.land_albedo, look.water_albedo, water);
-}
-
 void PlanetPasses::upload() {
   data_ = Buffer(&scene_.data, sizeof(PlanetData));
   data_.bind(kPlanetBinding);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   if (scene_.air) {
     const Planet& planet = *request_.planet;
-    const AirTables tables = make_air_tables(*planet.air, planet.body.equatorial_m, mean_albedo());
+    tables_ = std::make_shared<const AirTables>(
+        make_air_tables(*planet.air, planet.body.equatorial_m, mean_ground_albedo(request_)));
+    const AirTables& tables = *tables_;
     // Float: twilight is below what half floats hold, and filters of half floats are no faster.
     depth_ = make_texture_2d(tables.depth.width, tables.depth.height, GL_RGBA32F, GL_LINEAR);
     glTextureSubImage2D(depth_.id(), 0, 0, 0, tables.depth.width, tables.depth.height, GL_RGB,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "gl/object.h"
@@ -22,12 +23,13 @@ class PlanetPasses {
   void bind_view() const;
   void draw_ground(GLuint picture, const std::string& switches);
   void add_to(RenderReport& report) const;
+  // As uploaded; null without air.
+  std::shared_ptr<const AirTables> tables() const { return tables_; }
 
  private:
-  glm::dvec3 mean_albedo() const;
-
   const RenderRequest& request_;
   PlanetScene scene_;
+  std::shared_ptr<const AirTables> tables_;
   Buffer data_;
   Texture depth_, light_, surface_, sun_map_, met_;
   std::uint64_t table_bytes_ = 0, surface_bytes_ = 0, map_bytes_ = 0, met_bytes_ = 0;

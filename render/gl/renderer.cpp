@@ -323,7 +323,10 @@ RenderResult Renderer::run() {
   timed("read back", [&] { read_back(); });
   check_overruns();
   if (request_.settings.probe_pixels > 0)
-    timed("error probe", [&] { result_.error = estimate_error(request_, forest_, result_.image); });
+    timed("error probe", [&] {
+      result_.error =
+          estimate_error(request_, forest_, result_.image, planet_ ? planet_->tables() : nullptr);
+    });
   report();
   return std::move(result_);
 }

@@ -16,6 +16,15 @@ Number water_slope_variance(Number wind_m_per_s) {
   return Number(0.003) + Number(0.00512) * max(wind_m_per_s, Number(0.0));
 }
 
+// Of the slopes of both axes: its integral over the plane of slopes is 1. cos_tilt > 0: of a wave.
+Number water_slope_density(Number cos_tilt, Number slope_variance) {
+  Number slope2 = (Number(1.0) - cos_tilt) * (Number(1.0) + cos_tilt) / (cos_tilt * cos_tilt);
+#ifdef NEPHO_MUTANT_SLOPES_OF_ONE_AXIS
+  slope2 = slope2 / Number(2.0);
+#endif
+  return exp(-(slope2 / slope_variance)) / (pi * slope_variance);
+}
+
 // Smith's Lambda for Gaussian slopes as a rational curve (Walter et al. 2007): what waves hide of
 // each other, seen at this cosine.
 Number water_hiding(Number mu, Number slope_variance) {
@@ -27,15 +36,18 @@ Number water_hiding(Number mu, Number slope_variance) {
 }
 
 // The sun's glint: BRDF times mu_sun. cos_tilt: of the wave that mirrors the sun to the eye, cos_half
-// of the angle between the sun and that wave's normal. Finite for mu -> 0 by Smith's Lambda.
+// of the angle between the sun and that wave's normal. Finite for mu -> 0 by Smith's Lambda; no wave
+// is as steep as 1000.
 InverseSolidAngle water_glint(Number mu, Number mu_sun, Number cos_tilt, Number cos_half,
                               Number slope_variance) {
-  if (!(mu > Number(0.0)) || !(mu_sun > Number(0.0)) || !(cos_tilt > Number(0.0)))
+  if (!(mu > Number(0.0)) || !(mu_sun > Number(0.0)) || !(cos_tilt > Number(1e-3)))
     return InverseSolidAngle(0.0);
   Number c2 = cos_tilt * cos_tilt;
-  Number slope2 = (Number(1.0) - cos_tilt) * (Number(1.0) + cos_tilt) / c2;
-  Number density = exp(-(slope2 / slope_variance)) / (pi * slope_variance);
+  Number density = water_slope_density(cos_tilt, slope_variance);
   Number seen = Number(1.0) + water_hiding(mu, slope_variance) + water_hiding(mu_sun, slope_variance);
+#ifdef NEPHO_MUTANT_NO_HIDING
+  seen = Number(1.0);
+#endif
   Number value = water_fresnel(cos_half) * density /
                  (Number(4.0) * max(mu, Number(1e-6)) * c2 * c2 * seen);
   return value * InverseSolidAngle(1.0);

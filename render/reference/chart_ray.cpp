@@ -250,6 +250,11 @@ std::unique_ptr<ChartRay> chart_ray(const VolumeInfo& info, const Ray& ray) {
   return std::make_unique<ShellRay>(static_cast<const ShellChart&>(*info.chart), cells, ray);
 }
 
+void Ground::set(const Ellipsoid& body) {
+  radius_m_ = body.equatorial_m;
+  z_scale_ = body.equatorial_m / body.polar_m;
+}
+
 void Ground::add(const Chart& chart) {
   const auto* shell = dynamic_cast<const ShellChart*>(&chart);
   if (!shell) return;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bricks/chart.h"
+#include "bricks/shell_chart.h"
 #include "bricks/volume_info.h"
 
 namespace nepho {
@@ -52,10 +53,11 @@ class ChartRay {
 
 std::unique_ptr<ChartRay> chart_ray(const VolumeInfo& info, const Ray& ray);
 
-// The planet's body: it hides the sun, and is `below` to the eye. Of the scene's shells, the lowest
-// of their bottoms, but no higher than sea level.
+// The planet's body: it hides the sun, and is `below` to the eye. Of the scene's planet; without
+// one, of the scene's shells the lowest of their bottoms, but no higher than sea level.
 class Ground {
  public:
+  void set(const Ellipsoid& body);
   void add(const Chart& chart);
   // Where the ray meets it from above, or kNoDistance_m.
   double distance_m(const Ray& ray) const;

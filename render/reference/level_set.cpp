@@ -76,8 +76,13 @@ struct FinestLevels::Cache {
   Shard& shard(const VolumeKey& key) { return shards[VolumeKeyHash()(key) % kShards]; }
 };
 
-FinestLevels::FinestLevels(std::span<const RenderVolume> volumes, double cache_mib)
-    : volumes_(volumes.begin(), volumes.end()), cache_(std::make_unique<Cache>()) {
+FinestLevels::FinestLevels(std::span<const RenderVolume> volumes, double cache_mib,
+                           const Forest* cut, int finer)
+    : volumes_(volumes.begin(), volumes.end()),
+      cut_(cut),
+      finer_(finer),
+      cache_(std::make_unique<Cache>()) {
+  for (const RenderVolume& volume : volumes_) tells_ice_.push_back(has_ice(volume.source->info()));
   // A quarter for summaries: there are 8/7 of them for each brick, and they are 30 times smaller.
   const double bytes = cache_mib * 1024 * 1024 / double(kShards);
   cache_->bricks_per_shard = std::size_t(0.75 * bytes / sizeof(LeafBrick)) + 1;
@@ -124,19 +129,25 @@ std::shared_ptr<const LeafBrick> FinestLevels::brick(std::size_t volume, NodeKey
 
 LevelLeaf FinestLevels::leaf(std::size_t volume, int root, const Index3& finest_cell) const {
   const Lattice& lattice = info(volume).lattice;
+  int finest = lattice.max_level();
+  if (cut_) {
+    const TreeNode& node = leaf_at(cut_->volumes[volume], root, finest_cell);
+    finest = std::min(finest, node.key.level() + finer_);
+  }
   for (int level = 0;; ++level) {
     const NodeKey key = node_of(lattice, root, finest_cell, level);
     const NodeSummary s = summary(volume, key);
-    const bool last = level == lattice.max_level();
+    const bool last = level == finest;
     const bool empty = s.empty && (last || s.children == 0 || s.error_bound_per_m == 0);
     if (empty || (s.constant && s.constant_extinction_per_m == 0))
       return {.key = key, .kind = NodeKind::kEmpty, .constant_per_m = 0, .brick = nullptr};
-    if (s.constant)
+    // Of a constant, the part that is ice is only in bricks.
+    if (s.constant && !tells_ice_[volume])
       return {.key = key,
               .kind = NodeKind::kConstant,
               .constant_per_m = double(s.constant_extinction_per_m),
               .brick = nullptr};
-    if (last || s.error_bound_per_m == 0)
+    if (last || s.error_bound_per_m == 0 || s.constant)
       return {
           .key = key, .kind = NodeKind::kBrick, .constant_per_m = 0, .brick = brick(volume, key)};
   }

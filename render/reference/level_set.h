@@ -66,7 +66,10 @@ class NoisyCutLevels final : public CutLevels {
 // with the source's own text where it fails.
 class FinestLevels final : public LevelSet {
  public:
-  FinestLevels(std::span<const RenderVolume> volumes, double cache_mib);
+  // With a `cut` (which outlives this): at most `finer` levels below its leaves. A sky of noise
+  // seen from space has nine more, which no picture and no error of one needs.
+  FinestLevels(std::span<const RenderVolume> volumes, double cache_mib, const Forest* cut = nullptr,
+               int finer = 0);
   ~FinestLevels() override;
   std::size_t size() const override { return volumes_.size(); }
   const VolumeInfo& info(std::size_t volume) const override {
@@ -81,6 +84,9 @@ class FinestLevels final : public LevelSet {
   std::shared_ptr<const LeafBrick> brick(std::size_t volume, NodeKey key) const;
 
   std::vector<RenderVolume> volumes_;
+  const Forest* cut_;
+  int finer_;
+  std::vector<char> tells_ice_;
   std::unique_ptr<Cache> cache_;
 };
 

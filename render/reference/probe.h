@@ -1,20 +1,27 @@
 #pragma once
 
+#include <memory>
+
+#include "air/air_tables.h"
 #include "renderer.h"
 #include "tree/forest.h"
 
 namespace nepho {
 
 // The error line of a picture, measured on settings.probe_pixels of its pixels: drawn by
-// settings.seed, one from each of as many compact patches of the pixels that show some volume. Each
-// is marched again by the CPU (ray_march.h), exactly:
+// settings.seed, one from each of as many compact patches of the pixels that show some volume; over
+// a planet, of all pixels but those on the sun's disc, as its air and ground are the picture too.
+// Each is marched again by the CPU (ray_march.h), exactly:
 //   integration       picture              against the same bricks
 //   level of detail   the finest bricks    against these bricks
 //   quantisation      these bricks + noise against these bricks (uniform, +-1/2 step)
-//   light model       a table by optical depth and scattering angle, measured on slabs
-// Same numbers for any number of threads. Costs about three exact rays per probe, each with seven
+//   light model       a table by optical depth and scattering angle, measured on slabs: of the
+//                     clouds' light alone
+// `tables`: of the planet's air, as the picture was made with; null: made again. Same numbers for
+// any number of threads. Costs about three exact rays per probe, each with seven
 // shadow rays per cell; the finest bricks are kept in 256 MiB. Throws Error where a source fails.
 ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
-                             const HdrImage& picture);
+                             const HdrImage& picture,
+                             std::shared_ptr<const AirTables> tables = nullptr);
 
 }  // namespace nepho

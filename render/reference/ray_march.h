@@ -1,13 +1,17 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
+#include "air/air_lookup.h"
 #include "reference/chart_ray.h"
 #include "reference/level_set.h"
 #include "renderer.h"
 
 namespace nepho {
+
+class PlanetModel;
 
 // The renderer's transport and light model in double precision on the CPU, without its
 // approximations: cell-exact optical depth (lattice.md 5: Simpson per cell, exact in a box; the
@@ -19,7 +23,12 @@ namespace nepho {
 // A step of optical depth x adds T x (S0 e0(x) + (S1 - S0) w1(x)), and is halved while the
 // estimated error of the linear source, T (1 - e^-x) |dS| |d ln S| / 8, is above `source_tolerance`
 // of the pixel's radiance. The ground is the ellipsoid under a shell: it hides the sun,
-// and is `below` to the eye.
+// and is `below` to the eye. What of a volume is ice has a phase function of its own, weighted by
+// its part of k.
+//
+// With a planet, air stands between and before the clouds (air_march.h), whose shadow on it is
+// marched from each place; E0 is what the air leaves of the sun, the sky's light that of the air's
+// tables, `up` the place's own; the ground shines as its own marches light it (planet_model.h).
 struct MarchSettings {
   double source_tolerance = 1e-4;
   double least_transmittance = 1e-6;  // the ray ends there
@@ -27,8 +36,8 @@ struct MarchSettings {
 
 struct MarchResult {
   glm::dvec3 radiance_W_per_m2_sr_nm{0.0};
-  glm::dvec3 scattered_W_per_m2_sr_nm{0.0};  // the part that is not background
-  double optical_depth = 0;                  // as far as the ray went
+  glm::dvec3 scattered_W_per_m2_sr_nm{0.0};  // the clouds' part
+  double optical_depth = 0;                  // of clouds, as far as the ray went
 };
 
 // Unit rows: up, and two level directions, as the renderer's. Sky light comes from +-each.
@@ -37,25 +46,35 @@ std::array<glm::dvec3, 3> sky_axes(const glm::dvec3& up);
 // Through the middle of a pixel; row 0 is at the top.
 Ray camera_ray(const Camera& camera, int width, int height, int x, int y);
 
-// Thread-safe; `levels` outlives it and holds the request's volumes.
+// Thread-safe; `levels` outlives it and holds the request's volumes. `planet`: the request's, for
+// marches that share it; null: made here.
 class RayMarch {
  public:
-  RayMarch(const LevelSet& levels, const RenderRequest& request, MarchSettings settings = {});
+  static constexpr double kOpaque = 1e4;
 
-  // Through all volumes, to t_max, the ground or the end of all charts; infinite along a level ray
-  // in a periodic layer.
-  double optical_depth(const Ray& ray, double t_max_m = kNoDistance_m) const;
+  RayMarch(const LevelSet& levels, const RenderRequest& request, MarchSettings settings = {},
+           std::shared_ptr<const PlanetModel> planet = nullptr);
+
+  // Through all volumes, to t_max, the ground (the ellipsoid), the end of all charts, or where it
+  // is above `most`; infinite along a level ray in a periodic layer.
+  double optical_depth(const Ray& ray, double t_max_m = kNoDistance_m, double most = kOpaque) const;
   MarchResult trace(const Ray& ray) const;
 
  private:
   struct Light {
     double tau_sun = 0, sun_part = 1, visible_up = 1, visible_side = 1, visible_down = 1;
+    glm::dvec3 sun_W_per_m2_nm{0.0};  // across its beam, without clouds
+    SkyLight sky;                     // W m-2 sr-1 nm-1
   };
-  struct Lamp;  // what is constant along one ray
+  struct Look {                                       // of a volume
+    std::vector<float> phase_table, ice_phase_table;  // the second empty: it tells no ice apart
+    double asymmetry = 0, ice_asymmetry = 0;
+  };
   class Trace;
 
   Light light_at(const glm::dvec3& point_m) const;
   double visibility(const glm::dvec3& point_m, const glm::dvec3& direction) const;
+  double sun_passed(const glm::dvec3& point_m) const;  // what clouds let through of its beam
 
   const LevelSet& levels_;
   const RenderRequest request_;
@@ -64,8 +83,9 @@ class RayMarch {
   bool sky_lights_ = false;
   int octaves_ = 1;
   std::array<glm::dvec3, 3> sky_axes_;
-  std::vector<std::vector<float>> phase_tables_;
-  std::vector<double> asymmetry_;
+  std::vector<Look> looks_;
+  std::shared_ptr<const PlanetModel> planet_;  // null: none
+  double cloud_top_m_ = -kNoDistance_m;
 };
 
 }  // namespace nepho

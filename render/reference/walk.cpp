@@ -62,10 +62,13 @@ void VolumeWalk::load_corners() {
   for (std::size_t a = 0; a < 3; ++a)
     s[a] = std::uint32_t((block_.low[a] - node_.low[a]) / size_[a]);
   const LeafBrick& brick = *leaf_.brick;
+  const IceCodes* ice = brick.ice.get();
   for (std::uint32_t c = 0; c < 8; ++c) {
     const Index3 corner = {s[0] + (c & 1), s[1] + (c >> 1 & 1), s[2] + (c >> 2)};
-    const std::uint16_t code = brick.codes[brick_offset(corner[0], corner[1], corner[2])];
+    const std::size_t at = brick_offset(corner[0], corner[1], corner[2]);
+    const std::uint16_t code = brick.codes[at];
     corners_[c] = double(decode(code, brick.scale, brick.offset));
+    if (ice) ice_corners_[c] = double(decode(ice->codes[at], ice->scale, ice->offset));
     // Zero decodes exactly; what coding did to it is nothing.
     if (code != 0 || brick.offset != 0)
       corners_[c] = std::max(
@@ -113,6 +116,10 @@ bool VolumeWalk::next() {
 double VolumeWalk::extinction_per_m(double t_m) const {
   if (leaf_.kind == NodeKind::kEmpty) return 0;
   if (leaf_.kind == NodeKind::kConstant) return leaf_.constant_per_m;
+  return interpolated(corners_, t_m);
+}
+
+double VolumeWalk::interpolated(const std::array<double, 8>& corners, double t_m) const {
   const glm::dvec3 at = ray_->cells_at(leaf_root_, t_m);
   glm::dvec3 f;
   for (int a = 0; a < 3; ++a) {
@@ -120,11 +127,24 @@ double VolumeWalk::extinction_per_m(double t_m) const {
     f[a] = std::clamp((at[a] - double(block_.low[i])) / double(size_[i]), 0.0, 1.0);
   }
   const auto along_x = [&](std::size_t c) {
-    return corners_[c] + f.x * (corners_[c + 1] - corners_[c]);
+    return corners[c] + f.x * (corners[c + 1] - corners[c]);
   };
   const double near = along_x(0) + f.y * (along_x(2) - along_x(0));
   const double far = along_x(4) + f.y * (along_x(6) - along_x(4));
   return near + f.z * (far - near);
+}
+
+double VolumeWalk::ice_part(double t_m) const {
+  if (leaf_.kind != NodeKind::kBrick || !leaf_.brick->ice) return 0;
+  const auto greatest = [](const auto& codes) {
+    return double(codes.scale) * 65535 + double(codes.offset);
+  };
+  const double most = greatest(*leaf_.brick), least = 1e-5 * most;
+  if (!(most > 0)) return 0;
+  const double whole = std::clamp(greatest(*leaf_.brick->ice) / most, 0.0, 1.0);
+  return std::clamp(
+      (interpolated(ice_corners_, t_m) + least * whole) / (extinction_per_m(t_m) + least), 0.0,
+      1.0);
 }
 
 int VolumeWalk::sub_steps(double length_m) const {

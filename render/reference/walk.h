@@ -27,7 +27,10 @@ class VolumeWalk {
   double t1_m() const { return t1_m_; }
   NodeKind kind() const { return leaf_.kind; }
   double extinction_per_m(double t_m) const;  // t inside the piece
-  int sub_steps(double length_m) const;       // Simpson's, for such a length of it
+  // Part of it that is ice, 0 .. 1: where extinction goes to 0, the whole brick's (as the
+  // renderer's).
+  double ice_part(double t_m) const;
+  int sub_steps(double length_m) const;  // Simpson's, for such a length of it
   std::size_t pieces() const { return pieces_; }
   bool endless() const { return endless_; }
   int root() const { return leaf_root_; }                  // of the piece
@@ -37,6 +40,7 @@ class VolumeWalk {
   bool in_leaf() const;
   void find_leaf();
   void load_corners();
+  double interpolated(const std::array<double, 8>& corners, double t_m) const;
 
   const LevelSet& levels_;
   std::size_t volume_;
@@ -49,8 +53,8 @@ class VolumeWalk {
   LevelLeaf leaf_;
   int leaf_root_ = 0;
   ChartRay::Block node_{}, block_{};
-  ChartRay::Cell size_{};  // finest cells in one of the leaf's
-  std::array<double, 8> corners_{};
+  ChartRay::Cell size_{};                            // finest cells in one of the leaf's
+  std::array<double, 8> corners_{}, ice_corners_{};  // the second where the brick has ice
   double t0_m_ = 0, t1_m_ = 0, resume_m_ = 0;
   std::size_t pieces_ = 0;
 };

@@ -139,9 +139,13 @@ ViewMetric::NodeView ViewMetric::view(const VolumeInfo& info, NodeKey key) const
   for (const glm::dvec3& point : shape.grid_m)
     distance_m = std::min(distance_m, glm::length(point - eye_m));
 
+  // A split of the height alone opens the way to those of width that follow it.
+  int last = key.level();
+  while (info.lattice.split_axes(last) == kSplitZ && last + 1 < info.lattice.max_level()) ++last;
   double voxel_m = 0;
   for (int axis = 0; axis < 3; ++axis)
-    if (splits(info.lattice.split_axes(key.level()), axis))
+    if (splits(info.lattice.split_axes(key.level()), axis) ||
+        splits(info.lattice.split_axes(last), axis))
       voxel_m = std::max(voxel_m, shape.edge_m[axis] / kBrickCells);
   // An eye in the node looks at voxels from half a voxel away.
   const double pixels = voxel_m / (std::max(distance_m, voxel_m / 2) * pixel_rad_);

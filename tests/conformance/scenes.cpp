@@ -32,7 +32,7 @@ ConformanceScene analytic(const std::string& name, const std::vector<Value>& val
     parameter.is_text = !value.text.empty();
     volume.parameters.push_back(parameter);
   }
-  return {name, volume, "analytic", 0};
+  return {name, volume, "analytic", 0, true};
 }
 
 Value kind(const std::string& word) {
@@ -75,6 +75,18 @@ std::vector<ConformanceScene> analytic_scenes() {
                {kind("gaussian"), kShell, {"max_level", 5}, {"sigma_m", 2e5}, {"aspect", 40}},
                cube_corner),
   };
+}
+
+// The sky as a whole, so coarse that all of it can be visited, and its upper levels as they are.
+std::vector<ConformanceScene> noise_scenes() {
+  std::vector<ConformanceScene> scenes = {
+      analytic("noise_coarse", {{"seed", 3}, {"finest_resolution_m", 8e4}}),
+      analytic("noise_coarse_deep",
+               {{"layer1.base_m", 0}, {"layer1.top_m", 1e5}, {"finest_resolution_m", 8e4}}),
+      analytic("noise_fine", {{"seed", 3}})};
+  for (ConformanceScene& scene : scenes)
+    scene.volume.source = scene.source = "noise", scene.conserves = false;
+  return scenes;
 }
 
 std::vector<ConformanceScene> file_scenes() {

@@ -17,9 +17,12 @@ struct ConformanceScene {
   VolumeSpec volume;
   std::string source = "analytic";  // module
   std::size_t time = 0;             // which of VolumeInfo::times_s
+  // Coarse levels are expectations, not sums (procedural): they have a test of their own.
+  bool conserves = true;
   friend void PrintTo(const ConformanceScene& scene, std::ostream* out) { *out << scene.name; }
 };
 std::vector<ConformanceScene> analytic_scenes();
+std::vector<ConformanceScene> noise_scenes();
 std::vector<ConformanceScene> file_scenes();
 
 std::unique_ptr<BrickSource> open_scene(const VolumeSpec& volume);

@@ -49,6 +49,20 @@ TEST(LazyModules, AnalyticSceneLoadsItsModuleOnly) {
   EXPECT_EQ(mapped(kHeavy), "");
 }
 
+TEST(LazyModules, ProceduralSceneLoadsNoDataLibrary) {
+  VolumeSpec volume;
+  volume.name = "sky";
+  volume.source = "noise";
+  const auto source = SourceHost(default_module_folders()).open(volume);
+  ASSERT_NE(source, nullptr);
+  NodeSummary summary;
+  ASSERT_EQ(source->summary(NodeKey(0, 0, 0, 0, 0), 0, summary), Status::kOk);
+  EXPECT_FALSE(summary.empty);
+  EXPECT_NE(mapped("nepho_source_noise"), "");
+  EXPECT_EQ(mapped("nepho_source_(openvdb|netcdf|analytic)"), "");
+  EXPECT_EQ(mapped(kHeavy), "");
+}
+
 #ifdef NEPHO_SAMPLE_VDB
 TEST(LazyModules, VdbSceneLoadsOpenVdb) {
   VolumeSpec volume;

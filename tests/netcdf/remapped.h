@@ -33,14 +33,15 @@ struct Remapped {
   std::unique_ptr<HatRemap> remap;
 
   explicit Remapped(std::shared_ptr<const netcdf::Forecast> f, netcdf::LayoutOptions options = {},
-                    double clear_below_per_m = 0, std::size_t time = 0)
+                    double clear_below_per_m = 0, std::size_t time = 0,
+                    netcdf::Layers layers = netcdf::Layers::kSmooth)
       : forecast(std::move(f)),
         layout(choose_layout(*forecast, options)),
         columns(forecast->columns(time)),
         grid(forecast->grid(time)) {
-    remap =
-        std::make_unique<HatRemap>(layout.chart, layout.lattice, *grid, columns,
-                                   netcdf::RemapOptions{layout.extend_below_m, clear_below_per_m});
+    remap = std::make_unique<HatRemap>(
+        layout.chart, layout.lattice, *grid, columns,
+        netcdf::RemapOptions{layout.extend_below_m, clear_below_per_m, layers});
   }
   const ShellChart& chart() const { return *layout.chart; }
   int level() const { return layout.lattice.max_level(); }

@@ -3,140 +3,21 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <functional>
 
 #include "accuracy_report.h"
-#include "air/air_lookup.h"
 #include "dressed_source.h"
 #include "gl_fixture.h"
-#include "physics/physics_cpp.h"
-#include "scenes.h"
+#include "planet_quadrature.h"
 
 namespace nepho::test {
 namespace {
 
 using PlanetRenderer = GlFixture;
 
-constexpr double kRadius_m = 6.36e6;
-constexpr glm::dvec3 kUp{0, 0, 1}, kNorth{0, 1, 0};
-
-glm::dvec3 sun_at(double elevation_deg, double azimuth_deg = 0) {
-  const double e = elevation_deg * kPi / 180, a = azimuth_deg * kPi / 180;
-  return {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};
-}
-
-RenderRequest planet_request(std::initializer_list<const BrickSource*> sources) {
-  RenderRequest request = request_of(sources);
-  request.planet = Planet{};
-  request.planet->body = Ellipsoid::sphere(kRadius_m);
-  request.sun = {sun_at(40), {1.6, 1.85, 2.0}};
-  return request;
-}
-
-void look(RenderRequest& request, double height_m, double pitch_deg, double fov_deg = 60) {
-  const double p = pitch_deg * kPi / 180;
-  const glm::dvec3 eye = (kRadius_m + height_m) * kUp;
-  request.camera = {eye, eye + 1e4 * (std::cos(p) * kNorth + std::sin(p) * kUp),
-                    std::abs(pitch_deg) > 80 ? kNorth : kUp, fov_deg * kPi / 180};
-}
-
 glm::dvec3 rgb_at(const HdrImage& image, int x, int y) {
   const std::size_t p = 3 * std::size_t(y * image.width + x);
   return {image.rgb[p], image.rgb[p + 1], image.rgb[p + 2]};
 }
-
-// The same equations along one ray, in double, with thousands of steps; no cloud but shadows.
-class Quadrature {
- public:
-  explicit Quadrature(const RenderRequest& request)
-      : request_(request),
-        air_(*request.planet->air),
-        tables_(make_air_tables(air_, kRadius_m, request.planet->ground.water_albedo)),
-        lookup_(air_, kRadius_m, tables_) {}
-
-  // Part of the sun's beam that reaches a place.
-  std::function<double(glm::dvec3)> lit = [](glm::dvec3) { return 1.0; };
-  int steps = 3000;
-
-  glm::dvec3 radiance(const glm::dvec3& direction) const {
-    const glm::dvec3 eye = request_.camera.eye_m;
-    const double r = glm::length(eye), mu = glm::dot(eye, direction) / r,
-                 top = kRadius_m + air_.top_m;
-    const auto roots = [&](double sphere, double& near, double& far) {
-      const double discriminant = r * r * mu * mu - (r - sphere) * (r + sphere);
-      if (discriminant < 0) return false;
-      near = -r * mu - std::sqrt(discriminant);
-      far = -r * mu + std::sqrt(discriminant);
-      return far > 0;
-    };
-    double begin = 0, end = 0, ground = 0, behind = 0;
-    if (!roots(top, begin, end)) return night();
-    begin = std::max(begin, 0.0);
-    const bool hits = roots(kRadius_m, ground, behind) && ground > 0;
-    if (hits) end = ground;
-    const glm::dvec3 to_sun = request_.sun.to_sun;
-    const double one_minus_cos = 1 - glm::dot(to_sun, direction);
-    const double rayleigh = f64::rayleigh_phase(one_minus_cos);
-    const double aerosol = f64::cornette_shanks_phase(one_minus_cos, air_.aerosol_asymmetry);
-    glm::dvec3 sum(0.0), depth(0.0);
-    for (int i = 0; i < steps; ++i) {
-      // Dense at both ends.
-      const auto at = [&](double u) { return begin + (end - begin) * u * u * (3 - 2 * u); };
-      const double t0 = at(double(i) / steps), t1 = at(double(i + 1) / steps), t = (t0 + t1) / 2;
-      const glm::dvec3 p = eye + t * direction;
-      const double h = glm::length(p) - kRadius_m, m = glm::dot(p, direction) / glm::length(p);
-      const double mu_sun = glm::dot(p, to_sun) / glm::length(p);
-      const AirDensity density = air_density(air_, h);
-      const AirLight light = lookup_.light(h, mu_sun);
-      const glm::dvec3 sun = lit(p) * sun_in_air(h, mu_sun);
-      const glm::dvec3 step = (t1 - t0) * density.extinction_per_m;
-      for (int c = 0; c < 3; ++c) {
-        const double e0 = request_.sun.irradiance_W_per_m2_nm[c];
-        sum[c] +=
-            std::exp(-depth[c] - step[c] / 2) * (t1 - t0) *
-            f64::air_emission(density.rayleigh_per_m[c], density.aerosol_per_m[c], sun[c], rayleigh,
-                              aerosol, e0 * light.multiple[c], e0 * light.multiple_p2[c], m);
-      }
-      depth += step;
-    }
-    return sum + glm::exp(-depth) * (hits ? sea(eye + end * direction, direction) : night());
-  }
-
- private:
-  glm::dvec3 night() const { return f64::night_sky * request_.sun.irradiance_W_per_m2_nm; }
-
-  glm::dvec3 sun_in_air(double height_m, double mu_sun) const {
-    const double part = f64::sun_above_horizon(kRadius_m, height_m, mu_sun);
-    if (part <= 0) return glm::dvec3(0.0);
-    const double h = std::max(height_m, 0.0);
-    const double horizon = -std::sqrt(h * (2 * kRadius_m + h)) / (kRadius_m + h);
-    const glm::dvec3 depth = lookup_.depth(height_m, std::max(mu_sun, horizon));
-    return part * request_.sun.irradiance_W_per_m2_nm * glm::exp(-depth);
-  }
-
-  glm::dvec3 sea(const glm::dvec3& p, const glm::dvec3& direction) const {
-    const glm::dvec3 up = glm::normalize(p), to_sun = request_.sun.to_sun;
-    const glm::dvec3 half_way = glm::normalize(to_sun - direction);
-    const double mu_sun = glm::dot(up, to_sun);
-    const SkyLight sky = lookup_.sky(0, mu_sun);
-    const glm::dvec3 sun = lit(p) * sun_in_air(0, mu_sun);
-    const double waves = f64::water_slope_variance(request_.planet->ground.wind_m_per_s);
-    glm::dvec3 result;
-    for (int c = 0; c < 3; ++c) {
-      const double e0 = request_.sun.irradiance_W_per_m2_nm[c];
-      result[c] = f64::water_radiance(
-          request_.planet->ground.water_albedo[c], sun[c], std::max(-glm::dot(up, direction), 1e-5),
-          std::max(mu_sun, 0.0), glm::dot(up, half_way), glm::dot(half_way, to_sun), waves,
-          e0 * sky.up[c], e0 * sky.low[c]);
-    }
-    return result;
-  }
-
-  const RenderRequest& request_;
-  const Air air_;
-  AirTables tables_;
-  AirLookup lookup_;
-};
 
 // Every fourth pixel. Relative to its own radiance, but where that is under 1e-4 of the brightest.
 double worst_against(const RenderRequest& request, const Quadrature& truth) {
@@ -175,32 +56,6 @@ TEST_F(PlanetRenderer, ClearSkyFromTheGroundToSpace) {
       EXPECT_LE(worst, 0.01) << name;
     }
 }
-
-// A box of cloud, by whose edges the ground's and the air's shadows are known.
-struct Slab {
-  double low_m, high_m, half_width_m;
-  FieldSource source;
-  Slab(double low, double high, double half_width, double extinction)
-      : low_m(low),
-        high_m(high),
-        half_width_m(half_width),
-        source(std::make_shared<BoxChart>(
-                   glm::dvec3(-half_width, -half_width, kRadius_m + low),
-                   glm::dmat3(2 * half_width, 0., 0., 0., 2 * half_width, 0., 0., 0., high - low)),
-               isotropic(1), [=](glm::dvec3) { return extinction; }) {}
-  // Metres of the slab between a point and the sun.
-  double shade_m(const glm::dvec3& p, const glm::dvec3& to_sun) const {
-    double enter = 0, leave = 1e12;
-    const glm::dvec3 low(-half_width_m, -half_width_m, kRadius_m + low_m);
-    const glm::dvec3 high(half_width_m, half_width_m, kRadius_m + high_m);
-    for (int a = 0; a < 3; ++a) {
-      const double t0 = (low[a] - p[a]) / to_sun[a], t1 = (high[a] - p[a]) / to_sun[a];
-      enter = std::max(enter, std::min(t0, t1));
-      leave = std::min(leave, std::max(t0, t1));
-    }
-    return std::max(leave - enter, 0.0);
-  }
-};
 
 TEST_F(PlanetRenderer, ACloudsShadowLiesWhereTheSunPutsIt) {
   const Slab slab(2000, 3000, 1500, 0.5);
@@ -303,19 +158,8 @@ TEST_F(PlanetRenderer, TheHorizonIsNoLine) {
 // A ridge of known height and distance stands against the sky as high as it should.
 TEST_F(PlanetRenderer, TerrainStandsWhereItsMapSays) {
   const Slab slab(15e3, 16e3, 100, 1e-9);
-  auto map = std::make_shared<SurfaceMap>();
-  // Columns (centre, east, north) of the place under the eye.
-  map->axes = glm::dmat3(kUp, glm::dvec3(1, 0, 0), kNorth);
-  const double cell_m = 250, peak_m = 1800, at_m = 20e3, half_m = 5e3;
-  map->nx = map->ny = 241;
-  map->low_rad = glm::dvec2(-30e3 / kRadius_m);
-  map->step_rad = glm::dvec2(cell_m / kRadius_m);
-  for (int j = 0; j < map->ny; ++j)
-    for (int i = 0; i < map->nx; ++i) {
-      const double north_m = -30e3 + cell_m * j;
-      map->height_m.push_back(float(peak_m * std::max(0.0, 1 - std::abs(north_m - at_m) / half_m)));
-      map->water.push_back(0);
-    }
+  const double peak_m = 1800, at_m = 20e3, half_m = 5e3;
+  const auto map = ridge_map(at_m, peak_m, half_m, 250);
   const DressedSource source(slab.source, [&](VolumeInfo& info) { info.surface = map; });
   RenderRequest request = planet_request({&source});
   request.planet->air.reset();

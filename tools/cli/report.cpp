@@ -140,7 +140,7 @@ std::string explanation(const OpenedScene& opened, const RenderResult& result,
   list(out, "shader switches:", without_loops(report.shader_switches));
   std::vector<std::string> left_out = report.left_out;
   if (std::ranges::none_of(opened.sources, has_ice))
-    left_out.push_back("the second channel: no volume has ice apart");
+    left_out.push_back("the second channel: no volume tells ice apart");
   list(out, "left out:", left_out);
   return out.str();
 }

@@ -136,7 +136,7 @@ bool clear_of_terrain(const PlanetGround& ground, const glm::dvec3& eye_m, const
 
 double oblique_part_m(const CloudMap& map, const Ellipsoid& body) {
   const double extent_m = map.extent().radius_rad * body.equatorial_m;
-  return std::min(std::max(16 * map.finest_cell_m, 20e3),
+  return std::min(std::max(10 * map.finest_cell_m, 20e3),
                   std::max(extent_m / 2.5, 3 * map.finest_cell_m));
 }
 

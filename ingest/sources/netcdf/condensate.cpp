@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "air.h"
-#include "units/constants.h"
 #include "water.h"
 
 namespace nepho::netcdf {
@@ -88,9 +87,8 @@ void add_water(const WaterVariable& water, std::span<const float> values, const 
         ++statistics.without_air;
         continue;
       }
-      const Species species = water.freezes && state.temperature_K < constants::kZeroCelsius_K
-                                  ? frozen(water.species)
-                                  : water.species;
+      const Species species =
+          state.temperature_K < water.freezes_below_K ? frozen(water.species) : water.species;
       const double per_m =
           extinction(species, content, setting,
                      {n, at, state.temperature_K, state.density_kg_per_m3}, statistics);

@@ -15,7 +15,9 @@ struct WaterStatistics {
   double highest_content_kg_per_m3 = 0;  // all kinds together are not counted: the largest kind
   std::string highest_variable;
   double highest_extinction_per_m = 0;
-  double highest_path_kg_per_m2 = 0, mean_path_kg_per_m2 = 0;  // all kinds, per column
+  // Of columns; cloud apart from precipitation.
+  double highest_cloud_kg_per_m2 = 0, mean_cloud_kg_per_m2 = 0;
+  double highest_precipitation_kg_per_m2 = 0;
   double droplet_extinction = 0, droplet_radius_sum_m = 0;     // radius weighted by extinction
   double radius_m() const;                                     // 10 um where there are no droplets
 };

@@ -110,15 +110,12 @@ void HatRemap::remap_columns(const HorizontalGrid& grid, const ForecastColumns& 
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t cell) {
     const CellRange& range = ranges_[cell];
     if (range.count == 0) return;
-    ModelColumn model = column(cell);
-    vertical.means(model, range.first, {&hats_[0][range.at], range.count});
+    const ModelColumn model = column(cell);
+    const auto nz = std::size_t(columns.nz);
+    vertical.means(model, model.value_per_m, range.first, {&hats_[0][range.at], range.count});
     if (hats_[1].empty()) return;
-    // What is clear in all is clear in part: the ice never exceeds the total.
-    model.value_per_m = {&columns.ice_extinction_per_m[cell * std::size_t(columns.nz)],
-                         std::size_t(columns.nz)};
-    model.clear_where = {&columns.extinction_per_m[cell * std::size_t(columns.nz)],
-                         std::size_t(columns.nz)};
-    vertical.means(model, range.first, {&hats_[1][range.at], range.count});
+    vertical.means(model, {&columns.ice_extinction_per_m[cell * nz], nz}, range.first,
+                   {&hats_[1][range.at], range.count});
   });
 }
 

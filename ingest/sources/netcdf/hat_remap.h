@@ -12,6 +12,12 @@
 
 namespace nepho::netcdf {
 
+// What fills a model's layers:
+//   smooth    parabolas that keep each layer's optical depth (layer_profile.h); clear layers count
+//             as 0
+//   constant  the file's own steps: layers thicker than voxels show as terraces
+enum class Layers { kSmooth, kConstant };
+
 struct RemapOptions {
   // The lowest layer is continued downwards by this much (m): hats at the ground reach two voxels
   // below it, and would mix in nothing (lattice.md 7).
@@ -19,18 +25,19 @@ struct RemapOptions {
   // Layers thinner than this (1/m) count as clear: 1e-9 is an optical depth of 1e-4 in 100 km. 0
   // keeps all.
   double clear_below_per_m = 1e-9;
+  Layers layers = Layers::kSmooth;
 };
 
 // Hat means of a model's cell means at the finest level of a ShellChart (lattice.md 2):
 //
-//   c_g = sum over cells W(cell, g) sum over layers beta w(layer, k) / (V_h V_v)
+//   c_g = sum over cells W(cell, g) sum over layers w(layer, k) / (V_h V_v)
 //
-// W by CellOverlap, w = int Lambda_k r^2 dr exactly, V from the chart. Columns are vertical along
-// the ellipsoid's normal, hats along the scaled radius: they part by 0.34 % of the height
-// difference from the middle of the clouds (17 m at 5 km). Cells without cloud cost nothing.
+// W by CellOverlap, w = int beta Lambda_k r^2 dr by VerticalHats, V from the chart. Columns are
+// vertical along the ellipsoid's normal, hats along the scaled radius: they part by 0.34 % of the
+// height difference from the middle of the clouds (17 m at 5 km). Cells without cloud cost nothing.
 //
 //   sample column -> taps (cell, W / V_h)      sparse rows, float weights
-//   cell -> w beta / V_v for k in a range      float
+//   cell -> w / V_v for k in a range      float
 //
 // The same bits for any number of threads. Memory: 8 bytes per tap, 4 (8 with ice) per cell and
 // voxel height between its lowest and highest cloud.

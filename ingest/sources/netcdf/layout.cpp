@@ -34,10 +34,11 @@ std::vector<CellSize> some_cells(const HorizontalGrid& grid) {
   return sizes;
 }
 
-// Columns at least as narrow as asked; of the model's own width the nearest power of two.
+// Columns at least as narrow as asked; of the model's own width the nearest power of two, where its
+// cells are so wide (500 km) that their edges' curvature counts the next.
 int splits_for(double cells, bool asked) {
   const double exact = std::log2(cells / kBrickCells);
-  return std::max(0, int(asked ? std::ceil(exact - 1e-9) : std::round(exact)));
+  return std::max(0, int(asked || exact < 1.5 ? std::ceil(exact - 1e-9) : std::round(exact)));
 }
 
 [[noreturn]] void too_fine(const char* parameter, double asked_m) {

@@ -106,6 +106,7 @@ class Moment {
 struct SourceOptions {
   LayoutOptions layout;
   double clear_below_per_m;
+  Layers layers;
   bool box;
   int max_level;  // of the box; 0: as memory allows
 };
@@ -119,6 +120,7 @@ class NetcdfSource final : public BrickSource {
         layout_(choose_layout(*forecast_, options.layout)) {
     remap_options_.extend_below_m = layout_.extend_below_m;
     remap_options_.clear_below_per_m = options.clear_below_per_m;
+    remap_options_.layers = options.layers;
     describe(name, *moment(0));
   }
 
@@ -257,6 +259,11 @@ void NetcdfSource::state_facts(const Moment& first) {
         text("Clouds are cut off at the top of the data, at %.1f km, in %.0f %% of "
              "the cloudy columns.",
              range_m.y / 1000, 100.0 * double(cut) / double(cloudy)));
+  if (options_.layers == Layers::kSmooth)
+    info_.assumptions.push_back(
+        "Within the model's layers clouds are smoothed, each with its optical depth; the file's "
+        "own "
+        "steps with layers constant.");
   info_.assumptions.push_back(
       text("The lowest layer is continued %.0f m below the ground.", layout_.extend_below_m));
 }
@@ -270,6 +277,9 @@ std::unique_ptr<BrickSource> make_source(const std::string& volume_name,
   options.layout = {parameters.positive("horizontal_resolution"),
                     parameters.positive("vertical_resolution")};
   options.clear_below_per_m = parameters.number_in("clear_below", 1e-9, 0, 1e-3);
+  options.layers = parameters.choice("layers", {"smooth", "constant"}) == "smooth"
+                       ? Layers::kSmooth
+                       : Layers::kConstant;
   options.box = parameters.choice("chart", {"shell", "box"}) == "box";
   options.max_level = parameters.integer("max_level", 0, 0, NodeKey::kMaxSplitsZ);
   if (options.max_level > 0 && !options.box)

@@ -13,6 +13,8 @@ namespace nepho::netcdf {
 //   vertical_resolution    m; highest voxel of the finest level (the thinnest layer that can hold
 //                          cloud, at least 50 m)
 //   clear_below            1/m; thinner layers count as clear (1e-9; 0 keeps all)
+//   layers                 smooth | constant: what fills a model's layers (Layers in hat_remap.h);
+//                          point_extinction_per_m is constant in each either way
 //   chart                  shell | box: box draws the shell's finest field in cubes, in one box
 //                          around the planet, to compare with; a point field then
 //   max_level              of the box (the finest that takes no more than 60 000 bricks)

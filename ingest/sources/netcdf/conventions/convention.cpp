@@ -7,7 +7,7 @@
 namespace nepho::netcdf {
 namespace {
 
-const std::array<const Convention*, 1> kConventions = {&kWrf};
+const std::array<const Convention*, 2> kConventions = {&kWrf, &kCf};
 
 std::unique_ptr<Forecast> open_file(const std::string& path, const OpenRequest& request) {
   auto file = std::make_shared<const NcFile>(path, request.io_lock);
@@ -29,7 +29,9 @@ std::unique_ptr<Forecast> open_file(const std::string& path, const OpenRequest& 
 std::unique_ptr<Forecast> open_forecast(const OpenRequest& request) {
   if (request.files.empty())
     throw Error({"a forecast without files", "", "at least one .nc file", "none", ""});
-  return open_file(request.files.front(), request);
+  std::vector<std::unique_ptr<Forecast>> parts;
+  for (const std::string& path : request.files) parts.push_back(open_file(path, request));
+  return join_forecasts(std::move(parts));
 }
 
 }  // namespace nepho::netcdf

@@ -29,6 +29,9 @@ struct Convention {
   std::unique_ptr<Forecast> (*open)(std::shared_ptr<const NcFile> file, bool force);
 };
 
+// Times of all parts in order. At least one part.
+std::unique_ptr<Forecast> join_forecasts(std::vector<std::unique_ptr<Forecast>> parts);
+
 extern const Convention kWrf;  // WRF-ARW: wrf.cpp
 extern const Convention kCf;   // CF and what is near to it: cf.cpp
 

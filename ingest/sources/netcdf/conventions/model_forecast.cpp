@@ -35,8 +35,9 @@ class ModelForecast : public Forecast {
  public:
   ModelForecast(Model model, bool force) : model_(std::move(model)), force_(force) {
     order_times();
-    has_ice_ = std::ranges::any_of(
-        model_.water, [](const WaterVariable& w) { return is_ice(w.species) || w.freezes; });
+    has_ice_ = std::ranges::any_of(model_.water, [](const WaterVariable& w) {
+      return is_ice(w.species) || w.freezes_below_K > 0;
+    });
     open_first_water();
     measure_heights();
   }
@@ -107,7 +108,7 @@ void ModelForecast::order_times() {
                            " times occur twice; the later state of each is used.");
   index_ = std::move(kept);
   origin_ns_ = ns(index_.front());
-  for (const std::size_t i : index_) times_s_.push_back(double(ns(i) - origin_ns_) * 1e-9);
+  for (const std::size_t i : index_) times_s_.push_back(double(ns(i) - origin_ns_) / 1e9);
 }
 
 CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& grid) const {
@@ -146,17 +147,18 @@ Loaded ModelForecast::load(std::size_t time) const {
   columns.extinction_per_m.assign(cells * std::size_t(model_.nz), 0.0f);
   if (has_ice_) columns.ice_extinction_per_m = columns.extinction_per_m;
   const CloudSetting cloud = setting(index, *model_.grid(index));
-  std::vector<float> path(cells, 0.0f);
-  for (const WaterVariable& water : model_.water)
-    add_water(water, model_.field(*water.variable, index), air, cloud, columns, path,
-              result.statistics);
-  double sum = 0;
-  for (const float p : path) {
-    sum += double(p);
-    result.statistics.highest_path_kg_per_m2 =
-        std::max(result.statistics.highest_path_kg_per_m2, double(p));
+  std::vector<float> cloud_path(cells, 0.0f), rain_path(cells, 0.0f);
+  for (const WaterVariable& water : model_.water) {
+    const bool is_cloud =
+        water.species == Species::kCloudWater || water.species == Species::kCloudIce;
+    add_water(water, model_.field(*water.variable, index), air, cloud, columns,
+              is_cloud ? cloud_path : rain_path, result.statistics);
   }
-  result.statistics.mean_path_kg_per_m2 = sum / double(cells);
+  WaterStatistics& s = result.statistics;
+  s.highest_cloud_kg_per_m2 = double(*std::ranges::max_element(cloud_path));
+  s.highest_precipitation_kg_per_m2 = double(*std::ranges::max_element(rain_path));
+  s.mean_cloud_kg_per_m2 =
+      std::accumulate(cloud_path.begin(), cloud_path.end(), 0.0) / double(cells);
   check(result.statistics);
   return result;
 }
@@ -204,10 +206,16 @@ void ModelForecast::say(const WaterStatistics& s) {
   std::string names;
   for (const WaterVariable& w : model_.water)
     names += (names.empty() ? "" : ", ") + w.variable->name + " (" + name_of(w.species) +
-             (w.freezes ? ", ice below 0 degC" : "") + ")";
+             (w.freezes_below_K > 0
+                  ? text(", ice below %.0f degC", w.freezes_below_K - constants::kZeroCelsius_K)
+                  : std::string()) +
+             ")";
   facts.push_back("Water: " + names + ".");
-  facts.push_back(text("Column water: up to %.3g kg/m2, mean %.3g kg/m2.", s.highest_path_kg_per_m2,
-                       s.mean_path_kg_per_m2));
+  facts.push_back(text("Cloud water of a column: up to %.3g kg/m2, mean %.3g kg/m2.",
+                       s.highest_cloud_kg_per_m2, s.mean_cloud_kg_per_m2));
+  if (s.highest_precipitation_kg_per_m2 > 0)
+    facts.push_back(text("Rain, snow and graupel of a column: up to %.3g kg/m2.",
+                         s.highest_precipitation_kg_per_m2));
   if (s.negative > 0)
     facts.push_back(std::to_string(s.negative) +
                     text(" negative water values, down to %.3g, are taken as 0.", s.lowest));

@@ -34,7 +34,6 @@ const VariableNames kLandFraction = {{"land_area_fraction", "land_binary_mask"},
 const VariableNames kHalfLevelHeight = {
     {"geometric_height_at_half_level_center", "geometric_height_at_half_level"},
     {"z_ifc", "hhl", "zhalf", "z_w", "height_interface"}};
-const VariableNames kLowerInterfaceHeight = {{}, {"height_half"}};
 const VariableNames kFullLevelHeight = {
     {"altitude", "geometric_height_at_full_level_center", "height_above_mean_sea_level",
      "height_above_geopotential_datum", "height"},
@@ -69,7 +68,6 @@ const std::vector<WaterNames>& water_table() {
   static const std::vector<WaterNames> table = {
       {kCloudWater,
        {"mass_fraction_of_cloud_liquid_water_in_air",
-        "mass_fraction_of_cloud_condensed_water_in_air",
         "mass_fraction_of_stratiform_cloud_liquid_water_in_air"},
        {},
        Basis::kMoistAir},
@@ -90,6 +88,7 @@ const std::vector<WaterNames>& water_table() {
       {kCloudWater, {}, {"cloud_water"}, Basis::kMoistAir},
       {kCloudWater, {}, {"ql"}, Basis::kMoistAir},
       {kCloudWater, {}, {"lwc"}, Basis::kVolume},
+      {kCloudWater, {"mass_fraction_of_cloud_condensed_water_in_air"}, {}, Basis::kMoistAir},
       {kCloudIce,
        {"mass_fraction_of_cloud_ice_in_air", "mass_fraction_of_stratiform_cloud_ice_in_air"},
        {},
@@ -145,7 +144,7 @@ WaterVariable water_variable(const NcFile& file, const NcVariable& variable,
   } catch (const Error&) {
     refuse("the variable's units are not known", "\"" + unit + "\"");
   }
-  WaterVariable result{row.species, &variable, row.basis, parsed.factor, false};
+  WaterVariable result{row.species, &variable, row.basis, parsed.factor, 0};
 #ifdef NEPHO_MUTANT_UNITS_1000
   result.to_si = 1;
 #endif
@@ -157,6 +156,15 @@ WaterVariable water_variable(const NcFile& file, const NcVariable& variable,
     result.basis = Basis::kMoistAir;
   }
   return result;
+}
+
+// A vertical sum (kg m-2), whatever it is called, is no field of water.
+bool is_column(const NcVariable& variable) {
+  try {
+    return parse_unit(variable.text("units")).dimension == Dimension{.m = -2, .kg = 1};
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -181,7 +189,7 @@ std::vector<WaterVariable> find_water(const NcFile& file,
     if (known) continue;
     for (const NcVariable& variable : file.variables())
       if (variable.numeric() && answers(variable, row.standard_names, row.names) &&
-          accept(variable)) {
+          accept(variable) && !is_column(variable)) {
         found.push_back(water_variable(file, variable, row));
         if (row.names.empty()) break;  // one of a standard name's variants
       }
@@ -191,19 +199,24 @@ std::vector<WaterVariable> find_water(const NcFile& file,
 
 namespace {
 
+// Short enough for one message: standard names are told by their pattern.
 std::string known_water_names() {
   std::string text;
   for (const WaterNames& row : water_table()) {
     if (row.species != Species::kCloudWater && row.species != Species::kCloudIce) continue;
-    for (const auto& list : {row.names, row.standard_names})
-      for (const std::string& name : list) text += (text.empty() ? "" : ", ") + name;
+    for (const std::string& name : row.names) text += (text.empty() ? "" : ", ") + name;
   }
-  return text;
+  return text + ", or a standard_name mass_fraction_of_cloud_liquid_water_in_air or its like";
 }
 
-constexpr std::size_t kMostNames = 40;  // of a file with hundreds of variables
+constexpr std::size_t kMostNames = 12;  // of a file with hundreds of variables
 
 }  // namespace
+
+bool is_whole_condensate(const WaterVariable& water) {
+  return lower(water.variable->name) == "clwmr" ||
+         water.variable->text("standard_name") == "mass_fraction_of_cloud_condensed_water_in_air";
+}
 
 void require_water(const NcFile& file, const std::vector<WaterVariable>& water) {
   if (!water.empty()) return;

@@ -19,8 +19,7 @@ struct VariableNames {
 namespace names {
 extern const VariableNames kTemperature, kPressure, kSurfacePressure, kSpecificHumidity,
     kVapourMixingRatio, kRelativeHumidity, kCloudFraction, kDropletNumber, kTerrain, kLandFraction,
-    kHalfLevelHeight, kLowerInterfaceHeight, kFullLevelHeight, kGeopotentialHeight, kGeopotential,
-    kLatitude, kLongitude;
+    kHalfLevelHeight, kFullLevelHeight, kGeopotentialHeight, kGeopotential, kLatitude, kLongitude;
 }
 
 // The first variable that answers to the names, standard names before names, and that `accept`
@@ -36,13 +35,19 @@ struct WaterVariable {
   const NcVariable* variable = nullptr;
   Basis basis = Basis::kMoistAir;
   double to_si = 1;
-  bool freezes = false;  // below 0 degC it is the ice of its kind: schemes with one condensate
+  // Schemes with one condensate: below this it is the ice of its kind. 0: never.
+  double freezes_below_K = 0;
 };
 
 // Condensate among the numeric variables that `accept` takes, each kind at most once, cloud before
 // precipitation. Throws Error on units that are missing, unknown, or of no water content.
 std::vector<WaterVariable> find_water(const NcFile& file,
                                       const std::function<bool(const NcVariable&)>& accept);
+// Liquid and ice in one variable, where the file has no ice of its own: clwmr of models with the
+// scheme of Zhao & Carr (1997), doi:10.1175/1520-0493(1997)125<1931:APCSFO>2.0.CO;2.
+bool is_whole_condensate(const WaterVariable& water);
+inline constexpr double kWholeCondensateFreezes_K = 258.15;
+
 // Refuses a file without cloud water: lists its variables of three dimensions and more, and the
 // names known. Triangles and profiles are named as such.
 void require_water(const NcFile& file, const std::vector<WaterVariable>& water);

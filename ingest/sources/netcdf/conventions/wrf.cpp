@@ -296,7 +296,7 @@ void WrfFile::find_condensate(Model& model) const {
   const bool has_ice = std::ranges::any_of(
       model.water, [](const WaterVariable& water) { return is_ice(water.species); });
   if (file_->number("MP_PHYSICS") == kWsm3 && !has_ice) {
-    for (WaterVariable& water : model.water) water.freezes = true;
+    for (WaterVariable& water : model.water) water.freezes_below_K = constants::kZeroCelsius_K;
     model.facts.push_back(
         "WSM3 (MP_PHYSICS 3) has one condensate: QCLOUD is ice and QRAIN snow below 0 degC.");
   }

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <netcdf.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "conventions/convention.h"
+#include "core/error.h"
+
+namespace nepho::netcdf::test {
+
+// A folder of this process, gone at its end.
+class TestFolder {
+ public:
+  TestFolder()
+      : path_(std::filesystem::temp_directory_path() / ("nepho_nc_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~TestFolder() { std::filesystem::remove_all(path_); }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline const TestFolder& folder() {
+  static const TestFolder folder;
+  return folder;
+}
+
+using Attribute = std::variant<std::string, double, std::vector<double>>;
+using Attributes = std::map<std::string, Attribute>;
+
+// Writes one file with netCDF-C: dimensions, then variables with their values, in any order.
+class NcWriter {
+ public:
+  explicit NcWriter(const std::string& path, int format = NC_NETCDF4) {
+    check(nc_create(path.c_str(), NC_CLOBBER | format, &id_));
+  }
+  ~NcWriter() { nc_close(id_); }
+  void dimension(const std::string& name, std::size_t size) {
+    check(nc_def_dim(id_, name.c_str(), size, &dimensions_[name]));
+  }
+  // Numbers are attributes of the variable's own type where it is one of numbers.
+  void variable(const std::string& name, int type, const std::vector<std::string>& dimensions,
+                const std::vector<double>& values, const Attributes& attributes = {}) {
+    int variable = 0;
+    std::vector<int> ids;
+    for (const auto& d : dimensions) ids.push_back(dimensions_.at(d));
+    nc_redef(id_);
+    check(nc_def_var(id_, name.c_str(), type, int(ids.size()), ids.data(), &variable));
+    for (const auto& [key, value] : attributes) attribute(variable, key, value, type);
+    nc_enddef(id_);
+    if (!values.empty()) check(nc_put_var_double(id_, variable, values.data()));
+  }
+  void text(const std::string& name, const std::vector<std::string>& dimensions,
+            const std::string& characters) {
+    variable(name, NC_CHAR, dimensions, {});
+    int id = 0;
+    check(nc_inq_varid(id_, name.c_str(), &id));
+    check(nc_put_var_text(id_, id, characters.data()));
+  }
+  void global(const std::string& name, const Attribute& value) {
+    nc_redef(id_);
+    attribute(NC_GLOBAL, name, value, NC_DOUBLE);
+    nc_enddef(id_);
+  }
+
+ private:
+  static void check(int status) { ASSERT_EQ(status, NC_NOERR) << nc_strerror(status); }
+  void attribute(int variable, const std::string& key, const Attribute& value, int type) {
+    if (const auto* text = std::get_if<std::string>(&value)) {
+      check(nc_put_att_text(id_, variable, key.c_str(), text->size(), text->data()));
+      return;
+    }
+    const auto* one = std::get_if<double>(&value);
+    const std::vector<double> list =
+        one ? std::vector<double>{*one} : std::get<std::vector<double>>(value);
+    const bool is_packing = key == "scale_factor" || key == "add_offset";
+    check(nc_put_att_double(id_, variable, key.c_str(), is_packing ? NC_DOUBLE : type, list.size(),
+                            list.data()));
+  }
+
+  int id_ = -1;
+  std::map<std::string, int> dimensions_;
+};
+
+inline std::unique_ptr<Forecast> open(const std::string& path, bool force = false) {
+  OpenRequest request;
+  request.files = {path};
+  request.force = force;
+  return open_forecast(request);
+}
+
+// What opening says; "" where it succeeds.
+inline std::string refusal(const std::string& path) {
+  try {
+    open(path);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace nepho::netcdf::test

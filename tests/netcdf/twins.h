@@ -1,0 +1,187 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "nc_writer.h"
+
+namespace nepho::netcdf::test {
+
+// A small CF forecast whose every value is a formula of its place, written in any of the ways that
+// models have: what is read must not depend on them.
+struct CfTwin {
+  std::vector<double> latitude = {-30, -10, 10, 30, 50};
+  std::vector<double> longitude = {100, 120, 140, 160, 180, 200};
+  std::vector<double> pressure_hPa = {1000, 900, 700, 500};
+  std::vector<double> hours = {0, 6};
+  std::string order = "tzyx", water_units = "kg kg-1", level_units = "hPa";
+  std::string water_name = "clw", time_units = "hours since 2020-03-01 00:00:00";
+  double water_scale = 1, level_scale = 1;  // written = SI times this (levels: hPa times this)
+  int type = NC_FLOAT, format = NC_NETCDF4;
+  bool packed = false, with_time = true;
+  double fill = NAN;  // water where the column is at index 0 of both axes
+
+  // kg/kg; zero in half of the columns.
+  static double water(double lat, double lon, double hPa, double hour) {
+    const double turn = std::fmod(lon + 720, 360);
+    if (std::fmod(turn / 20, 2) >= 1) return 0;
+    return 2e-4 * (1 + lat / 100) * (1 + turn / 1000) * (hPa / 1000) * (1 + hour / 100);
+  }
+  static double temperature_K(double hPa) { return 288 - 60 * (1 - hPa / 1000); }
+  static double geopotential_height_m(double hPa) { return 7500 * std::log(1013.25 / hPa); }
+
+  template <class Value>
+  std::vector<double> field(Value value) const {
+    const std::string o = with_time ? order : std::string(order).erase(order.find('t'), 1);
+    const auto size = [&](char axis) {
+      return axis == 't'   ? hours.size()
+             : axis == 'z' ? pressure_hPa.size()
+             : axis == 'y' ? latitude.size()
+                           : longitude.size();
+    };
+    std::vector<double> values;
+    std::vector<std::size_t> at(o.size(), 0);
+    const auto index = [&](char axis) {
+      const auto found = o.find(axis);
+      return found == std::string::npos ? std::size_t{0} : at[found];
+    };
+    std::size_t total = 1;
+    for (const char axis : o) total *= size(axis);
+    for (std::size_t n = 0; n < total; ++n) {
+      std::size_t rest = n;
+      for (std::size_t d = o.size(); d-- > 0; rest /= size(o[d])) at[d] = rest % size(o[d]);
+      values.push_back(value(index('t'), index('z'), index('y'), index('x')));
+    }
+    return values;
+  }
+
+  std::string write(const std::string& name) const {
+    const std::string path = folder() / (name + ".nc");
+    NcWriter nc(path, format);
+    nc.dimension("time", hours.size());
+    nc.dimension("level", pressure_hPa.size());
+    nc.dimension("lat", latitude.size());
+    nc.dimension("lon", longitude.size());
+    if (with_time) nc.variable("time", NC_DOUBLE, {"time"}, hours, {{"units", time_units}});
+    std::vector<double> levels = pressure_hPa;
+    for (double& p : levels) p *= level_scale;
+    nc.variable("level", NC_DOUBLE, {"level"}, levels, {{"units", level_units}});
+    nc.variable("lat", NC_DOUBLE, {"lat"}, latitude, {{"units", "degrees_north"}});
+    nc.variable("lon", NC_DOUBLE, {"lon"}, longitude, {{"units", "degrees_east"}});
+    std::vector<std::string> dimensions;
+    for (const char axis : order)
+      if (axis != 't' || with_time)
+        dimensions.push_back(axis == 't'   ? "time"
+                             : axis == 'z' ? "level"
+                             : axis == 'y' ? "lat"
+                                           : "lon");
+    const auto put = [&](const char* variable, const char* units, auto value) {
+      nc.variable(variable, NC_FLOAT, dimensions, field(value), {{"units", std::string(units)}});
+    };
+    put("t", "K", [&](auto, auto z, auto, auto) { return temperature_K(pressure_hPa[z]); });
+    put("gh", "gpm",
+        [&](auto, auto z, auto, auto) { return geopotential_height_m(pressure_hPa[z]); });
+    std::vector<double> water_values = field([&](auto t, auto z, auto y, auto x) {
+      if (!std::isnan(fill) && y == 0 && x == 0) return fill;
+      return water_scale * water(latitude[y], longitude[x], pressure_hPa[z], hours[t]);
+    });
+    Attributes attributes;
+    if (!water_units.empty()) attributes["units"] = water_units;
+    if (packed) {  // as grib_to_netcdf: zero lands near, not on, zero
+      const double scale = 1.2e-8, offset = 3.7e-4 + 1e-19;
+      attributes["scale_factor"] = scale;
+      attributes["add_offset"] = offset;
+      attributes["_FillValue"] = -32767.0;
+      for (double& v : water_values) v = std::round((v - offset) / scale);
+    } else if (!std::isnan(fill)) {
+      attributes["_FillValue"] = fill;
+    }
+    nc.variable(water_name, packed ? NC_SHORT : type, dimensions, water_values, attributes);
+    return path;
+  }
+};
+
+// A WRF file on its Mercator map (true latitude 0, sphere of 6370 km), with a nest that moves by a
+// cell a time.
+struct WrfTwin {
+  int nx = 6, ny = 5, nz = 4, nt = 2;
+  double dx_m = 10000;
+  bool with_xlat = true, with_ice = true;
+  int scheme = 8;
+  double shift_deg = 0;  // of XLONG against the map
+  double cloud = 5e-4;   // QCLOUD of cell (2, 1), layer 1, time 0; twice that at time 1
+
+  static constexpr double kRadius_m = 6370000, kDegree = 0.017453292519943295;
+  double latitude(int t, double j) const {  // j in centres
+    const double y = (j + t) * dx_m + 2500000;
+    return (2 * std::atan(std::exp(y / kRadius_m)) - M_PI / 2) / kDegree;
+  }
+  double longitude(double i) const { return -90 + i * dx_m / kRadius_m / kDegree; }
+  double terrain_m(int i, int j) const { return 100.0 * i + 10 * j; }
+  // Geopotential of interface k, base and perturbation in one.
+  double phi(int k, int i, int j) const {
+    return 9.81 * (terrain_m(i, j) + 300.0 * k + 50.0 * k * k);
+  }
+
+  std::string write(const std::string& name) const {
+    const std::string path = folder() / (name + ".nc");
+    NcWriter nc(path);
+    const auto n = [](int size) { return std::size_t(size); };
+    nc.dimension("Time", n(nt));
+    nc.dimension("DateStrLen", 19);
+    nc.dimension("west_east", n(nx));
+    nc.dimension("south_north", n(ny));
+    nc.dimension("bottom_top", n(nz));
+    nc.dimension("bottom_top_stag", n(nz) + 1);
+    nc.global("TITLE", std::string(" OUTPUT FROM WRF V4.2 MODEL"));
+    for (const auto& [key, value] :
+         std::map<std::string, double>{{"MAP_PROJ", 3},
+                                       {"TRUELAT1", 0},
+                                       {"TRUELAT2", 0},
+                                       {"STAND_LON", -90},
+                                       {"DX", dx_m},
+                                       {"DY", dx_m},
+                                       {"MP_PHYSICS", scheme},
+                                       {"CEN_LAT", latitude(0, 0.5 * (ny - 1))},
+                                       {"CEN_LON", longitude(0.5 * (nx - 1))}})
+      nc.global(key, value);
+    std::string times;
+    for (int t = 0; t < nt; ++t) times += "2005-08-28_1" + std::to_string(2 + 3 * t) + ":00:00";
+    nc.text("Times", {"Time", "DateStrLen"}, times);
+    const auto put = [&](const char* variable, int levels, const char* units, auto value) {
+      std::vector<double> values;
+      for (int t = 0; t < nt; ++t)
+        for (int k = 0; k < std::max(levels, 1); ++k)
+          for (int j = 0; j < ny; ++j)
+            for (int i = 0; i < nx; ++i) values.push_back(value(t, k, j, i));
+      std::vector<std::string> dimensions = {"Time", "south_north", "west_east"};
+      if (levels > 0)
+        dimensions.insert(dimensions.begin() + 1, levels == nz ? "bottom_top" : "bottom_top_stag");
+      nc.variable(variable, NC_FLOAT, dimensions, values, {{"units", std::string(units)}});
+    };
+    if (with_xlat) {
+      put("XLAT", 0, "degree_north", [&](int t, int, int j, int) { return latitude(t, j); });
+      put("XLONG", 0, "degree_east",
+          [&](int, int, int, int i) { return longitude(i) + shift_deg; });
+    }
+    put("HGT", 0, "m", [&](int, int, int j, int i) { return terrain_m(i, j); });
+    put("LANDMASK", 0, "", [&](int, int, int, int i) { return i < 3 ? 1.0 : 0.0; });
+    put("PHB", nz + 1, "m2 s-2", [&](int, int k, int j, int i) { return phi(k, i, j) - 7; });
+    put("PH", nz + 1, "m2 s-2", [&](int, int, int, int) { return 7.0; });
+    put("PB", nz, "Pa", [&](int, int k, int, int) { return 95000.0 - 5000 * k; });
+    put("P", nz, "Pa", [&](int, int, int, int) { return 100.0; });
+    put("T", nz, "K", [&](int, int k, int, int) { return -5.0 + k; });
+    put("QVAPOR", nz, "kg kg-1", [&](int, int, int, int) { return 0.008; });
+    put("QCLOUD", nz, "kg kg-1", [&](int t, int k, int j, int i) {
+      return k == 1 && j == 1 && i == 2 ? cloud * (t + 1) : -7.9e-14;
+    });
+    if (with_ice)
+      put("QICE", nz, "kg kg-1",
+          [&](int, int k, int j, int i) { return k == 3 && j == 3 && i == 4 ? 1e-5 : 0; });
+    return path;
+  }
+};
+
+}  // namespace nepho::netcdf::test
