@@ -87,6 +87,13 @@ bool holds_everything(const Forest& cut) {
   return true;
 }
 
+// Whether some volume goes on below what the level-of-detail term looks at.
+bool reaches_deeper(const Forest& cut) {
+  return std::ranges::any_of(cut.volumes, [](const VolumeTree& tree) {
+    return tree.finest_level_used + kFinerLevels < tree.source->info().lattice.max_level();
+  });
+}
+
 double luminance(const glm::dvec3& c) {
   return f64::luminance(c.r, c.g, c.b);
 }
@@ -146,15 +153,12 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   estimate.level_of_detail = relative_rms(level_of_detail);
   estimate.quantisation = relative_rms(quantisation);
   estimate.light_model = relative_rms(light_model);
-  estimate.light_model_basis = planet ? "table, slabs;
-      for (const VolumeTree& tree : cut.volumes) if (tree.finest_level_used + kFinerLevels <
-                                                     tree.source->info().lattice.max_level()) {
+  estimate.light_model_basis =
+      planet ? "table, slabs; all terms over the whole picture" : "table, slabs";
+  if (reaches_deeper(cut))
     estimate.light_model_basis +=
         "; level of detail against " + std::to_string(kFinerLevels) + " finer levels";
-    break;
-  }
-  all terms over the whole picture " : " table, slabs ";
-      return estimate;
+  return estimate;
 }
 
 }  // namespace nepho
