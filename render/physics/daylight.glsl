@@ -10,14 +10,6 @@ Number cloud_flux_transmittance(Number tau, Number mu0, Number g) {
   return flux / (Number(4.0 / 3.0) + (Number(1.0) - g) * tau);
 }
 
-// Radiance of a cloud's base towards below, as of an even layer: what it scatters down of the sun, zenith
-// cosine mu0, and of a sky of even radiance (as if from 60 degrees). 0 where there is no cloud.
-Radiance cloud_base_radiance(Number tau, Number mu0, Number g, Irradiance sun, Radiance sky) {
-  Number of_sun = max(cloud_flux_transmittance(tau, mu0, g) - exp(-(tau / max(mu0, Number(0.05)))), Number(0.0));
-  Number of_sky = max(cloud_flux_transmittance(tau, Number(0.5), g) - exp(-(Number(2.0) * tau)), Number(0.0));
-  return of_sun * mu0 / pi * InverseSolidAngle(1.0) * sun + of_sky * sky;
-}
-
 // Daylight under clouds, as a part of the flux that would arrive without them: the direct beam, and
 // what the cloud overhead scatters down of that which clouds take from the beam. Nothing is added in
 // the sun beside a cloud, nor in a shadow with nothing overhead.

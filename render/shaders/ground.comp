@@ -80,18 +80,16 @@ void main() {
   vec3 sun = planet_sun_part(place.height_m, place.mu_sun) * vec_of(frame.sun_irradiance);
 #endif
 
-  // Clouds above, towards the sun, and where water mirrors: one march, so that it is compiled once.
-  float tau_above = 0.0, tau_sun = 0.0, tau_mirror = 0.0;
-  float mu = max(dot(place.up, to_eye), 1e-5);
-  vec3 mirrored = 2.0 * dot(place.up, to_eye) * place.up - to_eye;
+  // Clouds above and towards the sun: one march, twice, so that it is compiled once.
+  float tau_above = 0.0, tau_sun = 0.0;
 #ifdef NEPHO_CLOUDS
   bool day = sun.r + sun.g + sun.b > 0.0;
-  for (int towards = 0; towards < 3; ++towards) {
-    if ((towards == 1 && !day) || (towards == 2 && place.water <= 0.0)) continue;
+  for (int towards_sun = 0; towards_sun < 2; ++towards_sun) {
+    if (towards_sun == 1 && !day) continue;
     ray_start = place.point + dvec3(place.up) * 0.05LF;
-    ray_direction = towards == 0 ? dvec3(place.up) : towards == 1 ? vec_of(frame.to_sun) : dvec3(mirrored);
+    ray_direction = towards_sun == 1 ? vec_of(frame.to_sun) : dvec3(place.up);
     float tau = optical_depth_ahead(1e4);
-    if (towards == 0) tau_above = tau; else if (towards == 1) tau_sun = tau; else tau_mirror = tau;
+    if (towards_sun == 1) tau_sun = tau; else tau_above = tau;
   }
 #endif
   float cos_sun = dot(place.normal, to_sun);
@@ -114,18 +112,15 @@ void main() {
   sky_low *= sky_part;
   vec3 under = scattered * mu_sun / pi * sun;  // as the radiance of an even sky
   vec3 half_way = normalize(to_eye + to_sun);
+  float mu = max(dot(place.up, to_eye), 1e-5);
   vec3 radiance;
-  float mirror = water_mean_fresnel(mu, planet.slope_variance), free = exp(-tau_mirror);
   for (int c = 0; c < 3; ++c) {
     float land = land_radiance(planet.land_albedo[c], direct * sun[c], cos_sun, sky_up[c] + under[c], sky_low[c] + under[c]);
     float water = water_radiance(planet.water_albedo[c], direct * sun[c], mu, max(cos_sun, 0.0), dot(place.up, half_way),
                                  dot(half_way, to_sun), planet.slope_variance, sky_up[c] + under[c], sky_low[c] + under[c]);
-    // Daylight comes from all sides; the mirror shows sky or cloud in one direction.
-    float even = sky_towards(mu, sky_up[c] + under[c], sky_low[c] + under[c]);
-    float shown = free * sky_towards(mu, free_up[c], free_low[c]) +
-                  cloud_base_radiance(mu * tau_mirror, mu_sun, g, sun[c], 0.5 * (free_up[c] + free_low[c]));
 #ifndef NEPHO_MUTANT_MIRRORED_DAYLIGHT
-    water += mirror * (shown - even);
+    water += water_mirror_excess(mu, planet.slope_variance, sky_up[c] + under[c], sky_low[c] + under[c],
+                                 free_up[c], free_low[c]);
 #endif
     radiance[c] = mix(land, water, place.water);
   }
