@@ -14,6 +14,8 @@ namespace {
 
 // Less than this of the air's light is not worth a sun map.
 constexpr double kLeastShadow = 1e-3;
+// Lower hills, and a smaller part of land in a place, are left out.
+constexpr double kLeastTerrain_m = 1, kLeastLand = 1e-3;
 constexpr double kLeastWarp_m = 300;
 
 template <class Number, std::size_t N, class Vector>
@@ -122,7 +124,12 @@ class PlanetBuilder {
     data.surface_top_m = float(top_m);
     data.surface_cell_m = float(least_m);
     data.surface_slope = float(steepest);
-    scene_.terrain = top_m > 0 || std::ranges::any_of(map.water, [](float w) { return w < 1; });
+    double land = 0;
+    for (const float water : map.water) land = std::max(land, 1 - double(water));
+    scene_.surface_known = true;
+    scene_.terrain_top_m = top_m;
+    scene_.terrain_change = land;
+    scene_.terrain = top_m >= kLeastTerrain_m || land >= kLeastLand || request_.leave_nothing_out;
     if (!scene_.terrain) scene_.surface = nullptr;
   }
 
@@ -199,7 +206,7 @@ class PlanetBuilder {
     if (clouds_.endless) extent_m = sight_m;
     extent_m = std::min(extent_m, sight_m);
     scene_.sun_map_change = -std::expm1(-clouds_.most_per_m * 2 * extent_m);
-    scene_.sun_map = scene_.sun_map_change >= kLeastShadow;
+    scene_.sun_map = scene_.sun_map_change >= kLeastShadow || request_.leave_nothing_out;
     store(data.map_center_m, center_m);
     for (int c = 0; c < 3; ++c) {
       data.map_axes[c] = u[c];

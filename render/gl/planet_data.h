@@ -19,8 +19,11 @@ static_assert(sizeof(PlanetData) == 376);
 struct PlanetScene {
   PlanetData data{};
   bool air = false, clouds = false, terrain = false, sun_map = false;
-  int map_size = 0;                     // texels on a side of the sun map
-  double sun_map_change = 0;            // most that leaving it out can change the air's light
+  int map_size = 0;           // texels on a side of the sun map
+  double sun_map_change = 0;  // most that leaving it out can change the air's light
+  // Of a surface map, left out or not: its highest place, and the largest part of land in a place.
+  bool surface_known = false;
+  double terrain_top_m = 0, terrain_change = 0;
   const SurfaceMap* surface = nullptr;  // of the first volume that has one
 };
 

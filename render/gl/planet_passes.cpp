@@ -44,10 +44,13 @@ void dispatch_blocks(const Program& program, int width, int height) {
     }
 }
 
-std::string percent(double part) {
+std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.2g %%", 100 * part);
+  std::snprintf(text, sizeof text, "%.2g", value);
   return text;
+}
+std::string percent(double part) {
+  return number(100 * part) + " %";
 }
 
 }  // namespace
@@ -140,7 +143,11 @@ void PlanetPasses::add_to(RenderReport& report) const {
   report.planet_bytes = sizeof(PlanetData) + table_bytes_ + surface_bytes_ + map_bytes_;
   report.image_bytes += met_bytes_;
   if (!scene_.air) report.left_out.push_back("air: the planet has none");
-  if (!scene_.terrain)
+  if (!scene_.terrain && scene_.surface_known)
+    report.left_out.push_back("terrain: all is sea, at most " + number(scene_.terrain_top_m) +
+                              " m high; predicted to change at most " +
+                              percent(scene_.terrain_change) + " of the ground's light");
+  else if (!scene_.terrain)
     report.left_out.push_back("terrain: no volume has a ground of its own; all is sea level water");
   if (scene_.air && !scene_.sun_map)
     report.left_out.push_back("clouds' shadows on the air: predicted to change less than " +

@@ -95,3 +95,14 @@ Radiance water_radiance(Number albedo, Irradiance sun, Number mu, Number mu_sun,
   return body + mirror * sky_towards(mu, sky_up, sky_low) +
          water_glint(mu, mu_sun, cos_tilt, cos_half, slope_variance) * sun;
 }
+
+// To be added to water_radiance under clouds, where sky_up and sky_low hold daylight that clouds scatter
+// down: it comes from all sides and lights the water's body, but is no image in the mirror. What the
+// water mirrors is never brighter than the sky without clouds, free_up and free_low. (Mirrored in
+// full, it showed as a pale patch with sharp edges under a small cloud.)
+Radiance water_mirror_excess(Number mu, Number slope_variance, Radiance sky_up, Radiance sky_low,
+                             Radiance free_up, Radiance free_low) {
+  Radiance even = sky_towards(mu, sky_up, sky_low);
+  Radiance clear = sky_towards(mu, free_up, free_low);
+  return water_mean_fresnel(mu, slope_variance) * (min(even, clear) - even);
+}

@@ -125,9 +125,11 @@ glm::dvec3 PlanetModel::ground_W_per_m2_sr_nm(const Ray& ray, double t_m,
   for (int c = 0; c < 3; ++c) {
     const double land =
         f64::land_radiance(look_.land_albedo[c], direct * sun[c], cos_sun, up[c], low[c]);
-    const double water = f64::water_radiance(
-        look_.water_albedo[c], direct * sun[c], mu, std::max(cos_sun, 0.0),
-        glm::dot(spot.up, half_way), glm::dot(half_way, to_sun_), slope_variance_, up[c], low[c]);
+    const double water =
+        f64::water_radiance(look_.water_albedo[c], direct * sun[c], mu, std::max(cos_sun, 0.0),
+                            glm::dot(spot.up, half_way), glm::dot(half_way, to_sun_),
+                            slope_variance_, up[c], low[c]) +
+        f64::water_mirror_excess(mu, slope_variance_, up[c], low[c], sky.up[c], sky.low[c]);
     radiance[c] = land + spot.water * (water - land);
   }
   return radiance;

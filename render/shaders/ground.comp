@@ -107,6 +107,7 @@ void main() {
   // What clouds overhead scatter down counts as the sun's light on level ground.
   float mu_sun = max(dot(place.up, to_sun), 0.0);
   float scattered = max(cloud_daylight(tau_sun, tau_above, mu_sun, g) - direct, 0.0);
+  vec3 free_up = sky_up, free_low = sky_low;
   sky_up *= sky_part;
   sky_low *= sky_part;
   vec3 under = scattered * mu_sun / pi * sun;  // as the radiance of an even sky
@@ -117,6 +118,10 @@ void main() {
     float land = land_radiance(planet.land_albedo[c], direct * sun[c], cos_sun, sky_up[c] + under[c], sky_low[c] + under[c]);
     float water = water_radiance(planet.water_albedo[c], direct * sun[c], mu, max(cos_sun, 0.0), dot(place.up, half_way),
                                  dot(half_way, to_sun), planet.slope_variance, sky_up[c] + under[c], sky_low[c] + under[c]);
+#ifndef NEPHO_MUTANT_MIRRORED_DAYLIGHT
+    water += water_mirror_excess(mu, planet.slope_variance, sky_up[c] + under[c], sky_low[c] + under[c],
+                                 free_up[c], free_low[c]);
+#endif
     radiance[c] = mix(land, water, place.water);
   }
   vec4 before = imageLoad(picture, pixel);

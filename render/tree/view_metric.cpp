@@ -102,6 +102,9 @@ bool ViewMetric::on_screen(const glm::dvec3& center_m, double radius_m) const {
   const auto inside = [&](double across, double tangent) {
     return std::abs(across) - depth * tangent < radius_m * std::sqrt(1 + tangent * tangent);
   };
+#if defined(NEPHO_MUTANT_SEEN_HALF)
+  if (glm::dot(offset, right_) < 0) return false;
+#endif
   return inside(glm::dot(offset, right_), tan_half_width_) &&
          inside(glm::dot(offset, up_), tan_half_height_);
 }
