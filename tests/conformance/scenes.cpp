@@ -82,7 +82,7 @@ std::vector<ConformanceScene> noise_scenes() {
   std::vector<ConformanceScene> scenes = {
       analytic("noise_coarse", {{"seed", 3}, {"finest_resolution_m", 8e4}}),
       analytic("noise_coarse_deep",
-               {{"layer1.base_m", 0}, {"layer1.top_m", 1e5}, {"finest_resolution_m", 8e4}}),
+               {{"layer1.base_m", 0}, {"layer1.top_m", 3e4}, {"finest_resolution_m", 1.5e5}}),
       analytic("noise_fine", {{"seed", 3}})};
   for (ConformanceScene& scene : scenes)
     scene.volume.source = scene.source = "noise", scene.conserves = false;

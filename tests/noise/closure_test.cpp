@@ -9,7 +9,7 @@ namespace nepho::test {
 namespace {
 
 constexpr int kLevels = 6;
-constexpr int kNodes = 600;
+constexpr int kNodes = 1000;
 
 struct Sums {
   double own = 0, filtered = 0;
@@ -36,9 +36,8 @@ void add_node(const BrickSource& source, NodeKey key, Sums& sums) {
     const LayerStencil layers = layer_stencil(*info.chart, info.lattice, key.level(), first[2] + k);
     for (std::uint32_t j = 1; j < kBrickCells; ++j)
       for (std::uint32_t i = 1; i < kBrickCells; ++i) {
-        const ColumnStencil columns =
-            column_stencil(*info.chart, info.lattice, key.level(),
-                           {key.root(), first[0] + i, first[1] + j});
+        const ColumnStencil columns = column_stencil(*info.chart, info.lattice, key.level(),
+                                                     {key.root(), first[0] + i, first[1] + j});
         sums.own += own[brick_offset(i, j, k)];
         sums.filtered += weighted_mean(columns, layers, fine);
       }

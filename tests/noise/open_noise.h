@@ -25,8 +25,7 @@ template <class Use>
 auto with_request(const std::vector<Given>& given, Use&& use) {
   std::vector<RequestParameter> parameters;
   for (const Given& g : given)
-    parameters.push_back(
-        {g.name.c_str(), g.text.empty() ? nullptr : g.text.c_str(), g.number, ""});
+    parameters.push_back({g.name.c_str(), g.text.empty() ? nullptr : g.text.c_str(), g.number, ""});
   SourceRequest request{};
   request.volume_name = "sky";
   request.parameters = parameters.data(), request.parameter_count = parameters.size();

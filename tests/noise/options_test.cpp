@@ -26,10 +26,12 @@ TEST(NoiseOptions, DefaultSkyHasOneLayerOfEachType) {
 }
 
 TEST(NoiseOptions, OneEndMovesTheLayer) {
-  const noise::LayerSpec low = noise_planet(one_layer("stratus", {{"layer1.base_m", 100}})).layers[0];
+  const noise::LayerSpec low =
+      noise_planet(one_layer("stratus", {{"layer1.base_m", 100}})).layers[0];
   EXPECT_EQ(low.base_m, 100);
   EXPECT_EQ(low.top_m, 500);
-  const noise::LayerSpec high = noise_planet(one_layer("cirrus", {{"layer1.top_m", 12000}})).layers[0];
+  const noise::LayerSpec high =
+      noise_planet(one_layer("cirrus", {{"layer1.top_m", 12000}})).layers[0];
   EXPECT_EQ(high.top_m, 12000);
   EXPECT_EQ(high.base_m, 10200);
 }
@@ -42,6 +44,26 @@ TEST(NoiseOptions, VoxelsAreAsFineAsAskedFor) {
     EXPECT_LE(width_m, finest_m);
     EXPECT_GT(width_m, finest_m / 2);
     EXPECT_LE(planet.chart->thickness_m() / cells[2], std::max(finest_m, 1250.0));
+  }
+}
+
+TEST(NoiseOptions, LandIsItsPartOfThePlanet) {
+  EXPECT_EQ(noise_planet({{"land", 0}}).info.surface, nullptr);
+  for (const double land : {0.1, 0.3, 0.8, 1.0}) {
+    const auto map = noise_planet({{"land", land}}).info.surface;
+    ASSERT_NE(map, nullptr);
+    ASSERT_EQ(map->water.size(), std::size_t(map->nx) * std::size_t(map->ny));
+    ASSERT_EQ(map->height_m.size(), map->water.size());
+    EXPECT_NEAR(map->nx * map->step_rad.x, 6.283185307179586, 1e-12);
+    double dry = 0, all = 0, blurred = 0;
+    for (std::size_t at = 0; at < map->water.size(); ++at) {
+      const double area =
+          std::cos(map->low_rad.y + double(at / std::size_t(map->nx)) * map->step_rad.y);
+      dry += area * (1 - double(map->water[at])), all += area;
+      blurred += area * (map->water[at] > 0.01F && map->water[at] < 0.99F);
+    }
+    EXPECT_NEAR(dry / all, land, 0.01);
+    EXPECT_LT(blurred / all, 0.05);
   }
 }
 
@@ -63,6 +85,7 @@ TEST(NoiseOptions, RefusesWhatItDoesNotKnow) {
   says({{"finest_resolution_m", 0.5}}, "finest_resolution_m");
   says({{"finest_resolution_m", -1}}, "finest_resolution_m");
   says({{"seed", 1.5}}, "seed");
+  says({{"land", 2}}, "land");
   says({{"weather", 0, "fine"}}, "weather");
 }
 

@@ -45,10 +45,13 @@ class Octaves {
     const double share = 0.95 * spec_.weather;
     double rest = 0;
     for (const Octave& octave : list_) rest += octave.amplitude;
-    const double w = rest * share / (1 - share);
+    // Voxels of a planet's size hold nothing but weather.
+    const double w = rest > 0 ? rest * share / (1 - share) : share;
     const auto system = [&](Shape shape, double cell_m, double part) {
+      const std::size_t before = list_.size();
       add(Domain::kGlobe, shape, cell_m, part * w);
-      list_.back().seed = spec_.weather_seed * 0x9e3779b9u + (part > 0.3 ? 2u : 1u);
+      if (list_.size() > before)
+        list_.back().seed = spec_.weather_seed * 0x9e3779b9u + (shape == Shape::kRidge ? 2u : 1u);
     };
     if (!(w > 0)) return;
     system(Shape::kPlain, 1.9e6, 0.22);

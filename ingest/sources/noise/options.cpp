@@ -8,6 +8,7 @@
 
 #include "api/module_support.h"
 #include "bricks/quantise.h"
+#include "sources/noise/land.h"
 
 namespace nepho::noise {
 namespace {
@@ -107,6 +108,7 @@ Planet make_planet(const SourceRequest& request) {
   const double climate = p.number_in("climate", 1, 0, 1);
   const int seed = p.integer("seed", 1, 0, 1'000'000);
   const double finest_m = p.positive("finest_resolution_m", 100);
+  const double land = p.number_in("land", 0.3, 0, 1);
   planet.layers = read_layers(p, request, seed);
   p.finish();
   if (planet.layers.empty()) planet.layers = default_sky(seed);
@@ -121,8 +123,9 @@ Planet make_planet(const SourceRequest& request) {
     most += layer.extinction_per_m;
     ice = ice || layer.type == LayerType::kCirrus;
   }
-  // A voxel of zeros above and below.
-  bottom_m -= finest_m, top_m += finest_m;
+  // A voxel of zeros above and below, as far as voxels are thin against the sky.
+  const double margin_m = std::min(finest_m, 0.05 * (top_m - bottom_m));
+  bottom_m -= margin_m, top_m += margin_m;
 
   VolumeInfo& info = planet.info;
   info.name = request.volume_name;
@@ -133,12 +136,13 @@ Planet make_planet(const SourceRequest& request) {
   planet.chart->check(info.lattice);
   info.finest = SampleKind::kPoint;
   info.on_planet = true;
+  info.surface = make_land(land, std::uint32_t(seed) * 0x9e3779b9u + 5);
   const double code_error =
       most * (0.5 / kTopCode16 + 2 * double(std::numeric_limits<float>::epsilon()));
   info.channels[0].max_abs_error = code_error;
   if (ice)
     info.channels.push_back({Channel::kIceExtinction, "ice_extinction", "m-1", 16, code_error});
-  info.assumptions.push_back("the clouds are drawn from noise: no data are behind them");
+  info.assumptions.push_back("clouds and land are drawn from noise: no data are behind them");
   for (const LayerSpec& layer : planet.layers) {
     constexpr const char* names[] = {"stratus", "stratocumulus", "cumulus", "cirrus"};
     char text[160];
