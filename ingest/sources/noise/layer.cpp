@@ -132,7 +132,7 @@ double surplus(const Layer& layer, double threshold) {
 double column_surplus(LayerType type) {
   switch (type) {
     case LayerType::kStratus:
-      return -0.01;
+      return -0.10;
     case LayerType::kStratocumulus:
       return -0.09;
     case LayerType::kCumulus:
@@ -189,9 +189,9 @@ double Layer::profile(double t) const {
 
 double Layer::lift(double t) const {
   switch (spec.type) {
-    case LayerType::kStratus: {  // hanging undulations below, an even top
+    case LayerType::kStratus: {  // hanging undulations below, long waves on top
       const double foot = std::max(0.0, 0.35 - t) / 0.35;
-      return 1.2 * foot * foot + 0.5 * t * t * t * t;
+      return 1.2 * foot * foot + 1.8 * t * t * t;
     }
     case LayerType::kStratocumulus: {
       const double foot = std::max(0.0, 0.25 - t) / 0.25;
