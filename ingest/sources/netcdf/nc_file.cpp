@@ -148,6 +148,7 @@ void NcFile::inquire() {
     dimensions_.push_back(dimension);
   }
   for (int v = 0; v < variables; ++v) variables_.push_back(inquire_variable(v));
+  bytes_ = std::vector<std::atomic<std::uint64_t>>(std::size_t(variables));
   read_attributes(id_, NC_GLOBAL, attributes, global_.attributes);
 }
 
@@ -161,6 +162,7 @@ NcVariable NcFile::inquire_variable(int id) const {
           nc_inq_var(id_, id, name, &variable.type, &dimensions, ids.data(), &attributes))
     refuse(path_, status);
   variable.name = name;
+  nc_inq_type(id_, variable.type, nullptr, &variable.value_bytes);
   ids.resize(std::size_t(dimensions));
   variable.dimensions = ids;
   read_attributes(id_, id, attributes, variable.attributes);
@@ -185,6 +187,17 @@ std::string NcFile::shape_text(const NcVariable& variable) const {
   return variable.name + "(" + text + ")";
 }
 
+std::size_t NcFile::values_in(const NcVariable& variable) const {
+  std::size_t total = 1;
+  for (const int d : variable.dimensions) total *= size(d);
+  return total;
+}
+
+VariableBytes NcFile::bytes_read(const NcVariable& variable) const {
+  return {variable.name, bytes_[std::size_t(variable.id)],
+          values_in(variable) * variable.value_bytes};
+}
+
 // Floats without packing are read where they stay; all else goes through blocks of doubles along
 // the slowest dimension.
 template <class T>
@@ -195,6 +208,7 @@ std::vector<T> NcFile::read(const NcVariable& variable, const std::vector<std::s
       std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
   std::vector<T> result(total);
   if (total == 0) return result;
+  bytes_[std::size_t(variable.id)] += total * variable.value_bytes;
   const auto fail = [&](int status) {
     throw Error({"netCDF cannot read the variable", where(variable), "an intact netCDF file",
                  nc_strerror(status), "the file is cut short or damaged: write or copy it again"});
@@ -249,8 +263,8 @@ std::vector<double> NcFile::read_all(const NcVariable& variable) const {
 
 std::vector<std::string> NcFile::read_texts(const NcVariable& variable) const {
   const std::vector<std::size_t> count = shape(variable);
-  const std::size_t total =
-      std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
+  const std::size_t total = values_in(variable);
+  bytes_[std::size_t(variable.id)] += total * variable.value_bytes;
   std::vector<std::string> result;
   locked([&] {
     if (variable.type == NC_CHAR) {

@@ -238,7 +238,18 @@ void NetcdfSource::describe(const std::string& name, const Moment& first) {
   state_facts(first);
 }
 
+std::optional<std::string> reading_fact(const Forecast& forecast) {
+  double read = 0, held = 0;
+  for (const VariableBytes& bytes : forecast.bytes_read()) {
+    read += double(bytes.read);
+    held += double(bytes.held);
+  }
+  if (!(held > 0)) return {};
+  return text("Read: %.3g of %.3g MB of values.", read / 1e6, held / 1e6);
+}
+
 void NetcdfSource::state_facts(const Moment& first) {
+  if (const auto reading = reading_fact(*forecast_)) info_.facts.push_back(*reading);
   info_.facts.push_back(text("Finest voxels are %.4g km wide (at most) and %.4g m high.",
                              layout_.voxel_width_m / 1000, layout_.voxel_height_m));
   const glm::dvec2 range_m = forecast_->height_range_m();

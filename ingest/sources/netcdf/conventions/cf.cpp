@@ -199,7 +199,7 @@ void check_dimensions(const CfFile& cf, const NcVariable& water) {
                    "choose one index first, for example with ncks -d " + cf.file->name(d) + ",0"});
 }
 
-Model model_of(const std::shared_ptr<CfFile>& cf) {
+Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& region) {
   const NcFile& file = *cf->file;
   const NcVariable& first = *first_water(file);
   cf->roles = dimension_roles(file, first);
@@ -208,10 +208,21 @@ Model model_of(const std::shared_ptr<CfFile>& cf) {
   model.file = cf->file;
   check_dimensions(*cf, first);
   FieldReader& reader = *cf->reader;
-  reader = {cf->file, cf->roles.time, cf->roles.y, cf->roles.x, 0, 0};
+  reader.file = cf->file;
+  reader.time = cf->roles.time;
+  reader.y = cf->roles.y;
+  reader.x = cf->roles.x;
   cf->grid = cf_grid(file, cf->roles, reader, first, model.assumptions);
-  model.nx = reader.nx = cf->grid->nx();
-  model.ny = reader.ny = cf->grid->ny();
+  reader.nx = cf->grid->nx();
+  reader.ny = cf->grid->ny();
+  if (region) {
+    const CellWindow window = window_of({&cf->grid, 1}, *region, file.path());
+    model.facts.push_back(window_fact(*region, window, *cf->grid));
+    reader.restrict_to(window, cf->grid->around());
+    cf->grid = windowed(cf->grid, window);
+  }
+  model.nx = reader.nx;
+  model.ny = reader.ny;
   model.nz = int(file.size(cf->roles.z));
   model.utc_ns = cf->times_ns(model);
   const auto accept = [cf](const NcVariable& v) { return cf->reader->is_field(v, cf->roles.z); };
@@ -258,10 +269,10 @@ int recognise(const NcFile&) {
   return 1;
 }
 
-std::unique_ptr<Forecast> open_cf(std::shared_ptr<const NcFile> file, bool force) {
+std::unique_ptr<Forecast> open_cf(std::shared_ptr<const NcFile> file, const OpenRequest& request) {
   auto cf = std::make_shared<CfFile>();
   cf->file = std::move(file);
-  return make_forecast(model_of(cf), force);
+  return make_forecast(model_of(cf, request.region), request.force);
 }
 
 }  // namespace

@@ -56,6 +56,11 @@ class ModelForecast : public Forecast {
   double liquid_radius_m() const override { return radius_m_; }
   std::vector<std::string> assumptions() const override { return model_.assumptions; }
   std::vector<std::string> facts() const override { return model_.facts; }
+  std::vector<VariableBytes> bytes_read() const override {
+    std::vector<VariableBytes> all;
+    for (const NcVariable& v : model_.file->variables()) all.push_back(model_.file->bytes_read(v));
+    return all;
+  }
 
   // What the opening has read is handed out once, not read again.
   ForecastColumns columns(std::size_t time) const override {

@@ -39,7 +39,7 @@ class WrfFile {
   explicit WrfFile(std::shared_ptr<const NcFile> file);
 
   // Hooks hold `self`.
-  static Model model(const std::shared_ptr<WrfFile>& self);
+  static Model model(const std::shared_ptr<WrfFile>& self, const std::optional<Region>& region);
 
  private:
   const NcVariable& need(const char* name) const;
@@ -51,6 +51,8 @@ class WrfFile {
   ForecastGround ground(std::size_t time) const;
   std::shared_ptr<const HorizontalGrid> grid(std::size_t time) const;
   std::shared_ptr<const HorizontalGrid> make_grid(std::size_t time) const;
+  bool moves() const;
+  void restrict_to(const Region& region, Model& model);
   std::vector<std::int64_t> times_ns(Model& model) const;
   std::optional<MapProjection> projection() const;
   void find_condensate(Model& model) const;
@@ -58,7 +60,7 @@ class WrfFile {
   double interface_m(double geopotential, double surface_geopotential) const;
 
   std::shared_ptr<const NcFile> file_;
-  FieldReader reader_;
+  FieldReader reader_, whole_;  // of the region, of the whole domain
   int z_ = -1, z_staggered_ = -1;
   mutable std::mutex mutex_;
   mutable std::map<std::size_t, std::shared_ptr<const HorizontalGrid>> grids_;
@@ -86,6 +88,7 @@ WrfFile::WrfFile(std::shared_ptr<const NcFile> file) : file_(std::move(file)) {
          "bottom_top_stag one more than bottom_top",
          std::to_string(file_->size(z_staggered_)) + " and " + std::to_string(file_->size(z_)),
          ""});
+  whole_ = reader_;
 }
 
 const NcVariable& WrfFile::need(const char* name) const {
@@ -172,12 +175,26 @@ ForecastGround WrfFile::ground(std::size_t time) const {
   return ground;
 }
 
+bool WrfFile::moves() const {
+  const NcVariable* latitude = file_->find("XLAT");
+  return latitude &&
+         std::ranges::find(latitude->dimensions, reader_.time) != latitude->dimensions.end();
+}
+
+// Rows and columns that are in the region at any time, so that all times have the same number.
+void WrfFile::restrict_to(const Region& region, Model& model) {
+  std::vector<std::shared_ptr<const HorizontalGrid>> places;
+  for (std::size_t time = 0; time < (moves() ? file_->size(reader_.time) : 1); ++time)
+    places.push_back(grid(time));
+  const CellWindow window = window_of(places, region, file_->path());
+  model.facts.push_back(window_fact(region, window, *places.front()));
+  for (auto& [time, place] : grids_) place = windowed(place, window);
+  reader_.restrict_to(window, false);
+}
+
 // Grids are few and small; a moving nest has one per time.
 std::shared_ptr<const HorizontalGrid> WrfFile::grid(std::size_t time) const {
-  const NcVariable* latitude = file_->find("XLAT");
-  const bool moves = latitude && std::ranges::find(latitude->dimensions, reader_.time) !=
-                                     latitude->dimensions.end();
-  const std::size_t key = moves ? time : 0;
+  const std::size_t key = moves() ? time : 0;
   {
     const std::lock_guard guard(mutex_);
     if (const auto at = grids_.find(key); at != grids_.end()) return at->second;
@@ -189,13 +206,12 @@ std::shared_ptr<const HorizontalGrid> WrfFile::grid(std::size_t time) const {
 
 std::shared_ptr<const HorizontalGrid> WrfFile::make_grid(std::size_t time) const {
   const NcVariable *latitude = file_->find("XLAT"), *longitude = file_->find("XLONG");
-  if (latitude && longitude && reader_.nx > 1 && reader_.ny > 1) {
+  if (latitude && longitude && whole_.nx > 1 && whole_.ny > 1) {
     const auto doubles = [](const std::vector<float>& v) {
       return std::vector<double>(v.begin(), v.end());
     };
-    return points_grid(reader_.nx, reader_.ny, doubles(reader_.surface(*latitude, time)),
-                       doubles(reader_.surface(*longitude, time)),
-                       file_->path() + " [XLAT, XLONG]");
+    return points_grid(whole_.nx, whole_.ny, doubles(whole_.surface(*latitude, time)),
+                       doubles(whole_.surface(*longitude, time)), file_->path() + " [XLAT, XLONG]");
   }
   const auto map = projection();
   const auto lat = file_->number("CEN_LAT"), lon = file_->number("CEN_LON");
@@ -205,8 +221,8 @@ std::shared_ptr<const HorizontalGrid> WrfFile::make_grid(std::size_t time) const
                  "XLAT and XLONG, or MAP_PROJ with its attributes", "neither", ""});
   const glm::dvec2 centre = map->map_m({*lat, *lon});
   std::vector<double> x, y;
-  for (int i = 0; i < reader_.nx; ++i) x.push_back(centre.x + *dx * (i + 0.5 - 0.5 * reader_.nx));
-  for (int j = 0; j < reader_.ny; ++j) y.push_back(centre.y + *dy * (j + 0.5 - 0.5 * reader_.ny));
+  for (int i = 0; i < whole_.nx; ++i) x.push_back(centre.x + *dx * (i + 0.5 - 0.5 * whole_.nx));
+  for (int j = 0; j < whole_.ny; ++j) y.push_back(centre.y + *dy * (j + 0.5 - 0.5 * whole_.ny));
   return map_grid(x, y, *map);
 }
 
@@ -308,18 +324,19 @@ void WrfFile::find_condensate(Model& model) const {
   model.droplet_number = field("QNCLOUD");
 }
 
-Model WrfFile::model(const std::shared_ptr<WrfFile>& self) {
+Model WrfFile::model(const std::shared_ptr<WrfFile>& self, const std::optional<Region>& region) {
   const NcFile& file = *self->file_;
   Model model;
   model.convention = "WRF-ARW";
   model.file = self->file_;
-  model.nx = self->reader_.nx;
-  model.ny = self->reader_.ny;
   model.nz = int(file.size(self->z_));
   self->find_condensate(model);
   for (const char* name : {"PH", "PHB", "P", "PB", "T"}) self->need(name);
   model.utc_ns = self->times_ns(model);
   self->compare_with_map(*self->grid(0), model);
+  if (region) self->restrict_to(*region, model);
+  model.nx = self->reader_.nx;
+  model.ny = self->reader_.ny;
   if (!file.find("QVAPOR"))
     model.assumptions.push_back("There is no QVAPOR: the air is taken as dry (1 % of density).");
   model.field = [self](const NcVariable& variable, std::size_t time) {
@@ -338,8 +355,9 @@ int recognise(const NcFile& file) {
   return file.find("PHB") && file.find("PH") && dimension(file, "bottom_top_stag") >= 0 ? 90 : 0;
 }
 
-std::unique_ptr<Forecast> open_wrf(std::shared_ptr<const NcFile> file, bool force) {
-  return make_forecast(WrfFile::model(std::make_shared<WrfFile>(std::move(file))), force);
+std::unique_ptr<Forecast> open_wrf(std::shared_ptr<const NcFile> file, const OpenRequest& request) {
+  return make_forecast(WrfFile::model(std::make_shared<WrfFile>(std::move(file)), request.region),
+                       request.force);
 }
 
 }  // namespace
