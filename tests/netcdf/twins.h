@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -112,6 +113,7 @@ struct WrfTwin {
   int scheme = 8;
   double shift_deg = 0;  // of XLONG against the map
   double cloud = 5e-4;   // QCLOUD of cell (2, 1), layer 1, time 0; twice that at time 1
+  std::function<double(int t, int k, int j, int i)> water;  // QCLOUD instead, where there is one
 
   static constexpr double kRadius_m = 6370000, kDegree = 0.017453292519943295;
   double latitude(int t, double j) const {  // j in centres
@@ -175,6 +177,7 @@ struct WrfTwin {
     put("T", nz, "K", [&](int, int k, int, int) { return -5.0 + k; });
     put("QVAPOR", nz, "kg kg-1", [&](int, int, int, int) { return 0.008; });
     put("QCLOUD", nz, "kg kg-1", [&](int t, int k, int j, int i) {
+      if (water) return water(t, k, j, i);
       return k == 1 && j == 1 && i == 2 ? cloud * (t + 1) : -7.9e-14;
     });
     if (with_ice)
