@@ -245,7 +245,7 @@ std::vector<Column> columns_in(const BrickSource& source, const Region& inside) 
 // hat reaches beyond the row of cells that is read around the region.
 double worst_depth(const std::string& path, Region window, double margin_deg, double voxel_m) {
   const std::vector<RequestParameter> parameters = {
-      {"horizontal_resolution", nullptr, voxel_m, "m"}};
+      {"horizontal_resolution_m", nullptr, voxel_m, "m"}};
   const auto whole = nepho::test::made_source(open(path), parameters);
   const auto part = nepho::test::made_source(open(path, false, window), parameters);
   const auto columns_across = [](const BrickSource& s) {

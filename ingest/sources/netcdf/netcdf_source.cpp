@@ -83,7 +83,7 @@ class Moment {
     if (field.nodes.size() > kMostNodes)
       throw Error({"the forecast has too many bricks at this resolution", "",
                    "at most " + std::to_string(kMostNodes), std::to_string(field.nodes.size()),
-                   "choose a coarser vertical_resolution or horizontal_resolution"});
+                   "choose a coarser vertical_resolution_m or horizontal_resolution_m"});
     field.samples = [this, part](NodeKey key, double* samples) {
       if (box_)
         box_->samples(remap_, part, key, samples);
@@ -285,9 +285,9 @@ std::unique_ptr<BrickSource> make_source(const std::string& volume_name,
                                          std::shared_ptr<const Forecast> forecast,
                                          Parameters& parameters) {
   SourceOptions options{};
-  options.layout = {parameters.positive("horizontal_resolution"),
-                    parameters.positive("vertical_resolution")};
-  options.clear_below_per_m = parameters.number_in("clear_below", 1e-9, 0, 1e-3);
+  options.layout = {parameters.positive("horizontal_resolution_m"),
+                    parameters.positive("vertical_resolution_m")};
+  options.clear_below_per_m = parameters.number_in("clear_below_per_m", 1e-9, 0, 1e-3);
   options.layers = parameters.choice("layers", {"smooth", "constant"}) == "smooth"
                        ? Layers::kSmooth
                        : Layers::kConstant;
@@ -295,7 +295,7 @@ std::unique_ptr<BrickSource> make_source(const std::string& volume_name,
   options.max_level = parameters.integer("max_level", 0, 0, NodeKey::kMaxSplitsZ);
   if (options.max_level > 0 && !options.box)
     throw Error({"a level without a box", parameters.where("max_level"), "chart box", "chart shell",
-                 "of the shell, choose vertical_resolution and horizontal_resolution"});
+                 "of the shell, choose vertical_resolution_m and horizontal_resolution_m"});
   parameters.finish();
   return std::make_unique<NetcdfSource>(volume_name, std::move(forecast), options);
 }
