@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <numeric>
 
 #include "api/module_support.h"
 #include "classic_size.h"
 #include "core/error.h"
+#include "survives.h"
 
 namespace nepho::netcdf {
 namespace {
@@ -42,6 +44,13 @@ void check_plain_file(const std::string& path) {
     throw Error({"this is no file", path, "a netCDF file", "a folder or a device", ""});
   if (std::filesystem::file_size(path, error) == 0)
     throw Error({"the file is empty", path, "a netCDF file", "0 bytes", "write or copy it again"});
+}
+
+bool is_hdf5(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string magic(4, '\0');
+  in.read(magic.data(), 4);
+  return magic == "\x89HDF";
 }
 
 std::string trimmed(std::string text) {
@@ -121,7 +130,7 @@ auto NcFile::locked(Action&& action) const {
 NcFile::NcFile(std::string path, IoLock io_lock) : path_(std::move(path)), io_lock_(io_lock) {
   check_plain_file(path_);
   check_classic_size(path_);
-  locked([&] {
+  const auto open = [&] {
     if (const int status = nc_open(path_.c_str(), NC_NOWRITE, &id_)) refuse(path_, status);
     try {
       inquire();
@@ -129,6 +138,14 @@ NcFile::NcFile(std::string path, IoLock io_lock) : path_(std::move(path)), io_lo
       nc_close(id_);
       throw;
     }
+  };
+  locked([&] {
+    // Elsewhere first, all of it: much of the headers is read only when it is asked for.
+    if (is_hdf5(path_) && !survives([&] { open(), nc_close(id_); }))
+      throw Error({"netCDF cannot read the file", path_, "an intact netCDF file",
+                   "headers that the HDF5 library breaks down on",
+                   "it is damaged: write or copy it again"});
+    open();
   });
 }
 

@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kLargestContent_kg_per_m3 = 20e-3;  // four times a hailstorm's
 constexpr double kLargestExtinction_per_m = 1;
+constexpr double kColdest_K = 100, kWarmest_K = 400;        // of air anywhere
+constexpr double kLowest_m = -15000, kHighest_m = 1000000;  // of a model's layers
 constexpr double kWholeTroposphere_m = 15000;  // data that end below may cut clouds off
 
 std::string text(const char* format, double a, double b = 0) {
@@ -169,6 +171,12 @@ Loaded ModelForecast::load(std::size_t time) const {
 }
 
 void ModelForecast::check(const WaterStatistics& s) const {
+  if (s.coldest_K < kColdest_K || s.warmest_K > kWarmest_K) {
+    const double found_K = s.coldest_K < kColdest_K ? s.coldest_K : s.warmest_K;
+    throw Error({"no cloud is as cold or as warm", model_.file->path(), "air from 100 to 400 K",
+                 text("%.4g K where there is water", found_K),
+                 "the units may be wrong (degC under the name K)"});
+  }
   if (force_) return;
   if (s.highest_content_kg_per_m3 > kLargestContent_kg_per_m3)
     throw Error({"there is more water than any cloud holds",
@@ -277,6 +285,10 @@ void ModelForecast::measure_heights() {
       high = std::max(high, double(other[n * (nz + 1) + nz]));
     }
   }
+  if (!(low > kLowest_m && high < kHighest_m))
+    throw Error({"the layers are in no atmosphere", model_.file->path(),
+                 text("heights from %.0f to %.0f m", kLowest_m, kHighest_m),
+                 text("%.6g to %.6g m", low, high), "the units of the heights may be wrong"});
   height_range_m_ = {low, high};
   thinnest_m_ = thinnest_cloudy_layer_m(columns);
   if (high < kWholeTroposphere_m)
