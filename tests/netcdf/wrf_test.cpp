@@ -38,6 +38,14 @@ TEST(Wrf, GridMovesWithTheNest) {
   EXPECT_NE(facts_of(*f).find("agree with the map"), std::string::npos) << facts_of(*f);
 }
 
+TEST(Wrf, HeightsAreSaidToBeOverTheEllipsoid) {
+  const auto said = open(WrfTwin().write("geoid"))->assumptions();
+  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& text) {
+    return text.find("above the ellipsoid") != std::string::npos &&
+           text.find("107 m below to 86 m above") != std::string::npos;
+  }));
+}
+
 TEST(Wrf, MapAloneIsTheSameGrid) {
   WrfTwin twin;
   const std::string with = twin.write("with_xlat");

@@ -83,6 +83,7 @@ void add_water(const WaterVariable& water, std::span<const float> values, const 
       double content = amount;
       if (water.basis == Basis::kDryAir) content *= state.dry_density_kg_per_m3;
       if (water.basis == Basis::kMoistAir) content *= state.density_kg_per_m3;
+      // NaN is neither.
       statistics.coldest_K = std::min(statistics.coldest_K, state.temperature_K);
       statistics.warmest_K = std::max(statistics.warmest_K, state.temperature_K);
       if (!std::isfinite(content) || content < 0 || !std::isfinite(state.temperature_K)) {

@@ -216,6 +216,10 @@ void ModelForecast::open_first_water() {
 
 void ModelForecast::say(const WaterStatistics& s) {
   auto& facts = model_.facts;
+  // The range of EGM2008: Pavlis et al. (2012), doi:10.1029/2011JB008916.
+  model_.assumptions.push_back(
+      "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to "
+      "86 m above it.");
   std::string names;
   for (const WaterVariable& w : model_.water)
     names += (names.empty() ? "" : ", ") + w.variable->name + " (" + name_of(w.species) +
