@@ -192,8 +192,8 @@ TEST(Region, TheSourceSaysWhatWasRead) {
             "Region 10 to 20 N, 100 to 130 E: 9 x 5 of 72 x 25 cells, one beyond its edges.");
   EXPECT_EQ(fact(*whole, "Region"), "");
   double read[2];
-  ASSERT_EQ(std::sscanf(fact(*whole, "Read").c_str(), "Read: %lf of", &read[0]), 1);
-  ASSERT_EQ(std::sscanf(fact(*part, "Read").c_str(), "Read: %lf of", &read[1]), 1);
+  ASSERT_EQ(std::sscanf(fact(*whole, "Read").c_str(), "Read: %lf MB", &read[0]), 1);
+  ASSERT_EQ(std::sscanf(fact(*part, "Read").c_str(), "Read: %lf MB", &read[1]), 1);
   const double share = 9.0 * 5 / (72 * 25);
   EXPECT_NEAR(read[1] / read[0], share, 0.25 * share);  // axes are read whole
 }

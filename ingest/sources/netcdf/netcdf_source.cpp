@@ -245,7 +245,7 @@ std::optional<std::string> reading_fact(const Forecast& forecast) {
     held += double(bytes.held);
   }
   if (!(held > 0)) return {};
-  return text("Read: %.3g of %.3g MB of values.", read / 1e6, held / 1e6);
+  return text("Read: %.3g MB; all values of the data are %.3g MB.", read / 1e6, held / 1e6);
 }
 
 void NetcdfSource::state_facts(const Moment& first) {

@@ -39,6 +39,8 @@ struct CfFile {
   Air air(std::size_t time) const;
   ForecastGround ground(std::size_t time) const;
   std::vector<float> terrain_m(std::size_t time) const;
+  void restrict_to(const Region& region, Model& model);
+  void find_water_in(Model& model) const;
   void find_air();
   void find_ground();
   void choose_pressure(Model& model);
@@ -93,6 +95,28 @@ ForecastGround CfFile::ground(std::size_t time) const {
       value = std::isfinite(value) ? 1 - std::clamp(percent ? value / 100 : value, 0.0f, 1.0f) : 1;
   }
   return ground;
+}
+
+void CfFile::restrict_to(const Region& region, Model& model) {
+  const CellWindow window = window_of({&grid, 1}, region, file->path());
+  model.facts.push_back(window_fact(region, window, *grid));
+  reader->restrict_to(window, grid->around());
+  grid = windowed(grid, window);
+}
+
+void CfFile::find_water_in(Model& model) const {
+  const auto accept = [this](const NcVariable& v) { return reader->is_field(v, roles.z); };
+  model.water = find_water(*file, accept);
+  const bool has_ice =
+      std::ranges::any_of(model.water, [](const WaterVariable& w) { return is_ice(w.species); });
+  for (WaterVariable& water : model.water)
+    if (!has_ice && is_whole_condensate(water)) {
+      water.freezes_below_K = kWholeCondensateFreezes_K;
+      model.assumptions.push_back(water.variable->name +
+                                  " holds liquid and ice: ice below -15 degC is assumed.");
+    }
+  model.cloud_fraction = find_named(*file, names::kCloudFraction, accept);
+  model.droplet_number = find_named(*file, names::kDropletNumber, accept);
 }
 
 void CfFile::find_air() {
@@ -215,28 +239,12 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   cf->grid = cf_grid(file, cf->roles, reader, first, model.assumptions);
   reader.nx = cf->grid->nx();
   reader.ny = cf->grid->ny();
-  if (region) {
-    const CellWindow window = window_of({&cf->grid, 1}, *region, file.path());
-    model.facts.push_back(window_fact(*region, window, *cf->grid));
-    reader.restrict_to(window, cf->grid->around());
-    cf->grid = windowed(cf->grid, window);
-  }
+  if (region) cf->restrict_to(*region, model);
   model.nx = reader.nx;
   model.ny = reader.ny;
   model.nz = int(file.size(cf->roles.z));
   model.utc_ns = cf->times_ns(model);
-  const auto accept = [cf](const NcVariable& v) { return cf->reader->is_field(v, cf->roles.z); };
-  model.water = find_water(file, accept);
-  const bool has_ice =
-      std::ranges::any_of(model.water, [](const WaterVariable& w) { return is_ice(w.species); });
-  for (WaterVariable& water : model.water)
-    if (!has_ice && is_whole_condensate(water)) {
-      water.freezes_below_K = kWholeCondensateFreezes_K;
-      model.assumptions.push_back(water.variable->name +
-                                  " holds liquid and ice: ice below -15 degC is assumed.");
-    }
-  model.cloud_fraction = find_named(file, names::kCloudFraction, accept);
-  model.droplet_number = find_named(file, names::kDropletNumber, accept);
+  cf->find_water_in(model);
   cf->find_air();
   cf->find_ground();
   // `vertical` is part of the CfFile that these ask: a shared pointer would never let go.
