@@ -1,10 +1,13 @@
 // What is refused: one clear message each, within 5 s, and nothing else on the streams.
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <glm/glm.hpp>
 #include <random>
 #include <stdexcept>
 
@@ -241,6 +244,67 @@ TEST(Malformed, FlippedHeaders) {
               broken_down);
   EXPECT_GT(opened, 20);
   EXPECT_GT(refusals, 100);
+}
+
+TEST(Malformed, MissingHeights) {
+  const std::string wrf = WrfTwin().write("no_ph");
+  put_everywhere(wrf, "PH", "PH", NAN, "");
+  refused(wrf, {"[PH, PHB]", "neither rise nor fall", "or missing"});
+  const std::string cf = CfTwin().write("no_gh");
+  put_everywhere(cf, "gh", "gh", NAN, "");
+  refused(cf, {"[gh]", "neither rise nor fall", "missing values only"});
+}
+
+// Latitudes in no order: cells that turn both ways.
+TEST(Malformed, PlacesWithoutOrder) {
+  WrfTwin twin;
+  twin.nx = twin.ny = 12;
+  const std::string path = twin.write("scrambled");
+  int file = 0, variable = 0;
+  nc_open(path.c_str(), NC_WRITE, &file);
+  nc_inq_varid(file, "XLAT", &variable);
+  std::vector<double> values(2u * 12 * 12);
+  std::mt19937 random(3);
+  for (double& value : values) value = double(random() % 60);
+  nc_put_var_double(file, variable, values.data());
+  nc_close(file);
+  refused(path, {"[XLAT, XLONG]", "turn to the other"});
+}
+
+// Idealised runs: every cell at 0 N 0 E.
+TEST(Malformed, OnePlaceForAllCells) {
+  WrfTwin twin;
+  const std::string path = twin.write("one_place");
+  put_everywhere(path, "XLAT", "XLAT", 0, "");
+  put_everywhere(path, "XLONG", "XLONG", 0, "");
+  twin.with_xlat = false;
+  const auto map = open(twin.write("no_place"))->grid(0), by_map = open(path)->grid(0);
+  for (const double x : {0.0, 2.5, 6.0})
+    EXPECT_LT(glm::length(map->lat_lon_deg(x, 1) - by_map->lat_lon_deg(x, 1)), 1e-12);
+  int file = 0;
+  const double none = 0;
+  ASSERT_EQ(nc_open(path.c_str(), NC_WRITE, &file), NC_NOERR);
+  ASSERT_EQ(nc_put_att_double(file, NC_GLOBAL, "MAP_PROJ", NC_INT, 1, &none), NC_NOERR);
+  nc_close(file);
+  const auto plane = open(path);
+  const glm::dvec2 west = plane->grid(0)->lat_lon_deg(0, 2.5),
+                   east = plane->grid(0)->lat_lon_deg(6, 2.5);
+  const double metre_deg = 360 / (2 * M_PI * 6378137.0);
+  EXPECT_NEAR(west.y, -3 * twin.dx_m * metre_deg, 1e-5);
+  EXPECT_NEAR(east.y, 3 * twin.dx_m * metre_deg, 1e-5);
+  EXPECT_NEAR(east.x, 0, 1e-9);
+  const auto said = plane->assumptions();
+  EXPECT_TRUE(std::ranges::any_of(
+      said, [](const std::string& text) { return text.find("0 N 0 E") != std::string::npos; }));
+}
+
+TEST(Malformed, GroundOfFillValuesIsSea) {
+  const std::string path = WrfTwin().write("ground");
+  put_everywhere(path, "HGT", "HGT", 1e20, "");
+  put_everywhere(path, "LANDMASK", "LANDMASK", -9999, "");
+  const ForecastGround ground = open(path)->ground(0);
+  EXPECT_EQ(ground.height_m, std::vector<float>(30, 0.0f));
+  EXPECT_EQ(ground.water, std::vector<float>(30, 1.0f));
 }
 
 TEST(Malformed, WrfWithoutItsAir) {

@@ -83,16 +83,11 @@ std::vector<float> CfFile::terrain_m(std::size_t time) const {
 
 ForecastGround CfFile::ground(std::size_t time) const {
   ForecastGround ground;
-  if (terrain) {
-    ground.height_m = terrain_m(time);
-    for (float& height : ground.height_m)
-      if (!std::isfinite(height)) height = 0;
-  }
+  if (terrain) ground.height_m = terrain_m(time);
   if (land) {
     const bool percent = land->text("units") == "%";
     ground.water = reader->surface(*land, time);
-    for (float& value : ground.water)
-      value = std::isfinite(value) ? 1 - std::clamp(percent ? value / 100 : value, 0.0f, 1.0f) : 1;
+    for (float& value : ground.water) value = 1 - (percent ? value / 100 : value);
   }
   return ground;
 }

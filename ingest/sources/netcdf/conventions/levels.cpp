@@ -43,12 +43,12 @@ int direction(const std::vector<double>& values, const std::string& where) {
   return sign ? sign : 1;
 }
 
-void fill_levels(std::vector<double>& level_m) {
+bool fill_levels(std::vector<double>& level_m) {
   const auto valid = [](double z) { return std::isfinite(z); };
   const auto first = std::ranges::find_if(level_m, valid);
   if (first == level_m.end()) {
     for (std::size_t k = 0; k < level_m.size(); ++k) level_m[k] = kMissingLevelStep_m * double(k);
-    return;
+    return false;
   }
   for (auto at = first; at != level_m.begin(); --at) *(at - 1) = *at - kMissingLevelStep_m;
   for (std::size_t k = 1; k < level_m.size(); ++k) {
@@ -60,6 +60,7 @@ void fill_levels(std::vector<double>& level_m) {
                             : kMissingLevelStep_m;
     level_m[k] = level_m[k - 1] + step;
   }
+  return true;
 }
 
 double Levels::height_m(double value) const {
@@ -73,22 +74,25 @@ std::vector<double> Levels::terrain_m(std::size_t time) const {
   return {heights.begin(), heights.end()};
 }
 
-std::vector<float> Levels::checked(std::vector<float> interfaces) const {
-  const std::size_t lifted = make_rising(interfaces, std::size_t(nz()) + 1);
-  if (double(lifted) > kMostLifted * double(interfaces.size()))
-    refuse_levels(file().where(*variable), std::to_string(lifted) + " of " +
-                                               std::to_string(interfaces.size()) +
-                                               " heights below the one beneath, or missing");
+std::vector<float> rising_interfaces(std::vector<float> interface_m, std::size_t count,
+                                     const std::string& where) {
+  const std::size_t lifted = make_rising(interface_m, count);
+  if (double(lifted) > kMostLifted * double(interface_m.size()))
+    refuse_levels(where, std::to_string(lifted) + " of " + std::to_string(interface_m.size()) +
+                             " heights below the one beneath, or missing");
 #ifdef NEPHO_MUTANT_FLIPPED_LEVELS
-  const std::size_t count = std::size_t(nz()) + 1;
-  for (std::size_t at = 0; at < interfaces.size(); at += count) {
-    const float low = interfaces[at], high = interfaces[at + count - 1];
-    std::reverse(interfaces.begin() + std::ptrdiff_t(at),
-                 interfaces.begin() + std::ptrdiff_t(at + count));
-    for (std::size_t k = 0; k < count; ++k) interfaces[at + k] = low + high - interfaces[at + k];
+  for (std::size_t at = 0; at < interface_m.size(); at += count) {
+    float* column = &interface_m[at];
+    const float low = column[0], high = column[count - 1];
+    std::reverse(column, column + count);
+    for (std::size_t k = 0; k < count; ++k) column[k] = low + high - column[k];
   }
 #endif
-  return interfaces;
+  return interface_m;
+}
+
+std::vector<float> Levels::checked(std::vector<float> interface_m) const {
+  return rising_interfaces(std::move(interface_m), std::size_t(nz()) + 1, file().where(*variable));
 }
 
 std::vector<float> Levels::of_levels(const std::vector<float>& field, std::size_t time) const {
@@ -96,11 +100,13 @@ std::vector<float> Levels::of_levels(const std::vector<float>& field, std::size_
   const std::vector<double> ground = terrain_m(time);
   std::vector<float> result(cells() * (count + 1));
   std::vector<double> level(count);
+  bool any = false;
   for (std::size_t n = 0; n < cells(); ++n) {
     for (std::size_t k = 0; k < count; ++k) level[k] = height_m(double(field[k * cells() + n]));
-    fill_levels(level);
+    any |= fill_levels(level);
     interfaces_of_levels_m(level, ground[n], {&result[n * (count + 1)], count + 1});
   }
+  if (!any) refuse_levels(file().where(*variable), "missing values only");
   return checked(std::move(result));
 }
 

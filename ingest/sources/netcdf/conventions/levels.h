@@ -17,8 +17,13 @@ UnitOf height_unit(const NcVariable& variable);
 bool varies(const NcVariable& variable, int dimension);
 // Is the first level of most columns above their last? Reads those two.
 bool falls(const FieldReader& reader, const NcVariable& variable, int z);
-// Heights that are missing, in columns of levels: between neighbours, or in steps from the nearest.
-void fill_levels(std::vector<double>& level_m);
+// Heights that are missing, in columns of levels: between neighbours, or in steps from the nearest;
+// false where all are.
+bool fill_levels(std::vector<double>& level_m);
+
+// Columns of `count` interfaces made to rise; throws Error where more than 1 % had to be lifted.
+std::vector<float> rising_interfaces(std::vector<float> interface_m, std::size_t count,
+                                     const std::string& where);
 
 // One file's levels; hooks hold it.
 struct Levels {
@@ -37,7 +42,7 @@ struct Levels {
   double height_m(double value) const;
   // NaN where it is not known.
   std::vector<double> terrain_m(std::size_t time) const;
-  // Refuses where too much had to be lifted.
+  // rising_interfaces() of this file.
   std::vector<float> checked(std::vector<float> interface_m) const;
   // [k][j][i] heights of levels, in the file's unit, to interfaces.
   std::vector<float> of_levels(const std::vector<float>& field, std::size_t time) const;

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kLargestContent_kg_per_m3 = 20e-3;  // four times a hailstorm's
 constexpr double kLargestExtinction_per_m = 1;
+constexpr float kHighestGround_m = 12000;
 constexpr double kColdest_K = 100, kWarmest_K = 400;        // of air anywhere
 constexpr double kLowest_m = -15000, kHighest_m = 1000000;  // of a model's layers
 constexpr double kWholeTroposphere_m = 15000;  // data that end below may cut clouds off
@@ -50,9 +51,7 @@ class ModelForecast : public Forecast {
   std::shared_ptr<const HorizontalGrid> grid(std::size_t time) const override {
     return model_.grid(index_.at(time));
   }
-  ForecastGround ground(std::size_t time) const override {
-    return model_.ground ? model_.ground(index_.at(time)) : ForecastGround{};
-  }
+  ForecastGround ground(std::size_t time) const override { return ground_of(index_.at(time)); }
   glm::dvec2 height_range_m() const override { return height_range_m_; }
   double thinnest_layer_m() const override { return thinnest_m_; }
   double liquid_radius_m() const override { return radius_m_; }
@@ -86,6 +85,7 @@ class ModelForecast : public Forecast {
   void check(const WaterStatistics& statistics) const;
   CloudSetting setting(std::size_t index, const HorizontalGrid& grid) const;
   Loaded load(std::size_t time) const;
+  ForecastGround ground_of(std::size_t index) const;
 
   Model model_;
   bool force_;
@@ -118,6 +118,18 @@ void ModelForecast::order_times() {
   for (const std::size_t i : index_) times_s_.push_back(double(ns(i) - origin_ns_) / 1e9);
 }
 
+// Missing places, and heights that no planet's surface has (fill values nobody named), are sea.
+ForecastGround ModelForecast::ground_of(std::size_t index) const {
+  ForecastGround ground = model_.ground ? model_.ground(index) : ForecastGround{};
+  for (float& height : ground.height_m)
+    if (!(std::abs(height) < kHighestGround_m)) height = 0;
+  for (float& water : ground.water)
+    water = water >= 0 && water <= 1 ? water
+            : std::abs(water) < 2    ? std::clamp(water, 0.f, 1.f)
+                                     : 1;
+  return ground;
+}
+
 CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& grid) const {
   CloudSetting setting;
   if (const NcVariable* fraction = model_.cloud_fraction) {
@@ -132,7 +144,7 @@ CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& gri
     if (unit == "cm-3" || unit == "1/cm3" || unit == "cm**-3")
       for (float& value : setting.number) value *= 1e6f;
   }
-  if (model_.ground) setting.water = model_.ground(index).water;
+  setting.water = ground_of(index).water;
   if (has_ice_)
     for (int j = 0; j < model_.ny; ++j)
       for (int i = 0; i < model_.nx; ++i)

@@ -25,6 +25,7 @@ struct Hydrostatic {
     const std::vector<double> ground = levels->terrain_m(time);
     std::vector<float> result(cells * (nz + 1));
     std::vector<double> p(nz), tv(nz), z(nz);
+    bool any = false;
     for (std::size_t n = 0; n < cells; ++n) {
       for (std::size_t k = 0; k < nz; ++k) {
         const Air::State state = air.at(k, n, cells);
@@ -36,9 +37,10 @@ struct Hydrostatic {
           p, tv, known_ground ? double(surface[n]) * surface_factor : kStandardSurfacePressure_Pa,
           known_ground ? ground[n] : 0, z);
       for (double& height : z) height = height_of_geopotential_height_m(height);
-      fill_levels(z);
+      any |= fill_levels(z);
       interfaces_of_levels_m(z, ground[n], {&result[n * (nz + 1)], nz + 1});
     }
+    if (!any) refuse_levels(levels->file().where(*levels->variable), "no pressure or temperature");
     return levels->checked(std::move(result));
   }
 };
