@@ -20,6 +20,9 @@ namespace nepho::netcdf {
 namespace {
 
 constexpr std::size_t kBlockValues = std::size_t(1) << 18;  // unpacked at once: 2 MiB of doubles
+// Of each variable while the file is open. netCDF's own 16 MiB keep all that was ever read; here
+// everything is read once, or nearly.
+constexpr std::size_t kChunkCache_bytes = std::size_t(1) << 20, kChunkCacheSlots = 1009;
 
 // netCDF switches HDF5's error printing off on the thread that first calls it; HDF5 keeps that
 // setting per thread.
@@ -131,6 +134,9 @@ NcFile::NcFile(std::string path, IoLock io_lock) : path_(std::move(path)), io_lo
   check_plain_file(path_);
   check_classic_size(path_);
   const auto open = [&] {
+#ifndef NEPHO_MUTANT_KEPT_CHUNKS
+    nc_set_chunk_cache(kChunkCache_bytes, kChunkCacheSlots, 0.75f);
+#endif
     if (const int status = nc_open(path_.c_str(), NC_NOWRITE, &id_)) refuse(path_, status);
     try {
       inquire();
