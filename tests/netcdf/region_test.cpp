@@ -1,10 +1,12 @@
 // A region of a file: the same cells in the same places, and nothing else read.
 
 #include <map>
+#include <random>
 
 #include "accuracy_report.h"
 #include "geo/place.h"
 #include "made_source.h"
+#include "sources/netcdf/grid_search.h"
 #include "twins.h"
 
 namespace nepho::netcdf::test {
@@ -113,6 +115,58 @@ TEST(Region, GoesAroundWithTheWholeTurn) {
     EXPECT_NEAR(here - last, 1.25, 1e-9) << x;  // continuous where the file's end is
     last = here;
   }
+}
+
+// Cells by points inside them, for random regions on grids of all kinds, one over a pole.
+TEST(Region, HoldsEveryCellInsideAndNoMoreThanABorder) {
+  std::mt19937 random(11);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  int windows = 0, tight = 0;
+  for (const char* name : {"mercator", "globe", "rotated", "corner", "layer"}) {
+    const std::shared_ptr<const HorizontalGrid> grid =
+        nepho::test::synthetic_forecast(name)->grid(0);
+    for (int n = 0; n < 40; ++n) {
+      const glm::dvec2 middle = grid->lat_lon_deg(uniform(0, grid->nx()), uniform(0, grid->ny()));
+      const double high = uniform(0.3, std::string(name) == "globe" ? 40 : 4);
+      const double wide = high * uniform(0.5, 3);
+      const Region r = {std::max(-90.0, middle.x - high / 2), middle.y - wide / 2,
+                        std::min(90.0, middle.x + high / 2), middle.y + wide / 2};
+      const CellWindow window = window_of({&grid, 1}, r, "test");
+      ++windows;
+      int low_row = grid->ny(), high_row = -1;
+      for (int j = 0; j < grid->ny(); ++j)
+        for (int i = 0; i < grid->nx(); ++i)
+          for (int point = 0; point < 25; ++point) {
+            const glm::dvec2 at =
+                grid->lat_lon_deg(i + (point % 5 + 0.5) / 5, j + (point / 5 + 0.5) / 5);
+            const double east = r.west_deg + std::fmod(at.y - r.west_deg + 1080, 360);
+            if (at.x < r.south_deg || at.x > r.north_deg || east > r.east_deg) continue;
+            low_row = std::min(low_row, j);
+            high_row = std::max(high_row, j);
+            const int column = (i - window.x0 + grid->nx()) % grid->nx();
+            ASSERT_TRUE(column < window.nx && j >= window.y0 && j < window.y0 + window.ny)
+                << name << " " << to_text(r) << ": cell " << i << " " << j;
+          }
+      const int beyond = window.ny - (high_row - low_row + 1);
+      EXPECT_GE(beyond, std::min(window.y0, 1)) << name;
+      tight += beyond <= 3;  // a cell may overlap between the points
+    }
+  }
+  EXPECT_GE(tight, windows * 8 / 10);
+}
+
+// A cell around a pole has all longitudes, and latitudes beyond its corners'.
+TEST(Region, FindsTheCellAroundThePole) {
+  const std::shared_ptr<const HorizontalGrid> grid =
+      nepho::test::synthetic_forecast("rotated")->grid(0);
+  const glm::dvec2 pole = GridSearch(grid).find({90, 0}).at;
+  const CellWindow window = window_of({&grid, 1}, region("89.99,-180,90,180"), "test");
+  EXPECT_EQ(window.x0, int(pole.x) - 1);
+  EXPECT_EQ(window.y0, int(pole.y) - 1);
+  EXPECT_EQ(window.nx, 3);
+  EXPECT_EQ(window.ny, 3);
 }
 
 TEST(Region, MovesWithTheNest) {

@@ -37,6 +37,9 @@ CellExtent extent_of(const std::array<glm::dvec2, 4>& corner) {
     e.longitude_deg.low = std::min(e.longitude_deg.low, longitude);
     e.longitude_deg.high = std::max(e.longitude_deg.high, longitude);
   }
+#ifdef NEPHO_MUTANT_POLE_FORGOTTEN
+  turned = 0;
+#endif
   if (std::abs(turned) > 180) {  // around a pole
     e.longitude_deg = {-180, 180};
     if (corner[0].x > 0)
@@ -71,17 +74,23 @@ void mark(const HorizontalGrid& grid, const Region& region, Marks& marks) {
   }
 }
 
+#ifdef NEPHO_MUTANT_NO_BORDER
+constexpr int kBorder = 0;
+#else
+constexpr int kBorder = 1;
+#endif
+
 struct Run {
   int first = 0, count = 0;
 };
 
-// From the first mark to the last, and one more at each side.
+// From the first mark to the last, and the border at each side.
 Run run_of(const std::vector<char>& marks) {
   const int n = int(marks.size());
   const int first = int(std::ranges::find(marks, 1) - marks.begin());
   const int last = n - 1 - int(std::find(marks.rbegin(), marks.rend(), 1) - marks.rbegin());
-  const int from = std::max(first - 1, 0);
-  return {from, std::min(last + 1, n - 1) - from + 1};
+  const int from = std::max(first - kBorder, 0);
+  return {from, std::min(last + kBorder, n - 1) - from + 1};
 }
 
 // The same on a circle: all but the longest gap. The whole circle begins at 0.
@@ -95,9 +104,9 @@ Run run_around(const std::vector<char>& marks) {
       begin = (at + 1) % n;
     }
   }
-  const int count = n - longest + 2;
+  const int count = n - longest + 2 * kBorder;
   if (count >= n) return {0, n};
-  return {(begin - 1 + n) % n, count};
+  return {(begin - kBorder + n) % n, count};
 }
 
 std::string bounds_text(const HorizontalGrid& grid) {
