@@ -11,8 +11,9 @@
 #include <random>
 #include <stdexcept>
 
+#include "cf_twin.h"
 #include "survives.h"
-#include "twins.h"
+#include "wrf_twin.h"
 
 namespace nepho::netcdf::test {
 namespace {

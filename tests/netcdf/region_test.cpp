@@ -4,10 +4,11 @@
 #include <random>
 
 #include "accuracy_report.h"
+#include "cf_twin.h"
 #include "geo/place.h"
 #include "made_source.h"
 #include "sources/netcdf/grid_search.h"
-#include "twins.h"
+#include "wrf_twin.h"
 
 namespace nepho::netcdf::test {
 using nepho::test::report_accuracy;

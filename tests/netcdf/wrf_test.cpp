@@ -4,7 +4,7 @@
 
 #include "accuracy_report.h"
 #include "air.h"
-#include "twins.h"
+#include "wrf_twin.h"
 
 namespace nepho::netcdf::test {
 using nepho::test::report_accuracy;
