@@ -20,20 +20,9 @@ struct Loaded {
   std::string name;
   FloatImage image;  // as stored
   Metadata metadata;
+  std::optional<Scene> scene;  // that it was drawn from
   bool linear = false;
 };
-
-Loaded load(const std::string& name, const PictureFiles& pictures) {
-  input_kind(name);  // says so where there is no such file
-  Loaded out{name, {}, {}, is_linear(picture_format(name))};
-  out.image = pictures.read(name, out.metadata);
-  return out;
-}
-
-// Four channels are optical depth in our own pictures; elsewhere the fourth is opacity.
-bool has_depth(const Loaded& loaded) {
-  return loaded.linear && loaded.image.channels == 4 && loaded.metadata.contains(kSceneKey);
-}
 
 std::string size_text(const FloatImage& image) {
   return std::to_string(image.width) + "x" + std::to_string(image.height);
@@ -42,6 +31,31 @@ std::string size_text(const FloatImage& image) {
 // Grey pictures have one channel, or two with opacity.
 float channel(const FloatImage& image, std::size_t pixel, std::size_t c) {
   return image.values[pixel * std::size_t(image.channels) + (image.channels >= 3 ? c : 0)];
+}
+
+std::string pixel_text(const FloatImage& image, std::size_t pixel) {
+  const auto width = std::size_t(image.width);
+  return "inf or NaN at column " + std::to_string(pixel % width) + ", row " +
+         std::to_string(pixel / width);
+}
+
+Loaded load(const std::string& name, const PictureFiles& pictures) {
+  input_kind(name);  // says so where there is no such file
+  Loaded out{name, {}, {}, {}, is_linear(picture_format(name))};
+  out.image = pictures.read(name, out.metadata);
+  for (std::size_t i = 0; i < 3 * out.image.count(); ++i)
+    if (!std::isfinite(channel(out.image, i / 3, i % 3)))
+      throw Error({"not finite", name, "finite values", pixel_text(out.image, i / 3), ""});
+  const auto scene = out.metadata.find(kSceneKey);
+  if (scene != out.metadata.end())
+    out.scene = parse_scene(scene->second, name + " (" + kSceneKey + ")", ".");
+  return out;
+}
+
+// Four channels are optical depth in our own pictures; elsewhere the fourth is opacity. Over a
+// planet there is no nothing: every pixel counts, as in the error line.
+bool has_depth(const Loaded& loaded) {
+  return loaded.linear && loaded.image.channels == 4 && loaded.scene && !loaded.scene->planet;
 }
 
 HdrImage light_of(const Loaded& loaded) {
@@ -81,10 +95,8 @@ ByteImage shown_by(const Display& display, const HdrImage& light) {
 
 // What the picture's own scene says; nothing where it has none.
 std::optional<Display> display_in(const Loaded& loaded, const char* from) {
-  const auto found = loaded.metadata.find(kSceneKey);
-  if (found == loaded.metadata.end()) return {};
-  const Scene scene = parse_scene(found->second, loaded.name + " (" + kSceneKey + ")", ".");
-  if (!scene.exposure_ev) return {};
+  if (!loaded.scene || !loaded.scene->exposure_ev) return {};
+  const Scene& scene = *loaded.scene;
   return Display{*scene.exposure_ev, scene.tone_map, display_white(scene), scene.dither, from};
 }
 

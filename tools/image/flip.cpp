@@ -140,11 +140,23 @@ std::vector<glm::dvec3> seen_colours(const std::array<Plane, 3>& colours, double
   return out;
 }
 
-// Strength of edges and of points, from Gaussian derivatives of Y in [0, 1].
-struct Features {
-  std::vector<double> edge, point;
+// Strength of edges or of points: first or second derivatives of a Gaussian along x and y.
+std::vector<double> strength(const Plane& along_x, const Plane& along_y, const Kernel& derivative) {
+  const Plane dx = convolve_x(along_y, derivative), dy = convolve_y(along_x, derivative);
+  std::vector<double> out(dx.count());
+  for (std::size_t p = 0; p < out.size(); ++p) out[p] = std::hypot(dx.values[p], dy.values[p]);
+  return out;
+}
+
+// What an eye takes in of one picture, for each pixel.
+struct Look {
+  std::vector<glm::dvec3> colours;
+  std::vector<double> edges, points;
 };
-Features features_of(Plane y, double per_degree) {
+Look look_at(const ByteImage& image, double per_degree) {
+  std::array<Plane, 3> opponents = opponent_colours(image);
+  Look out{seen_colours(opponents, per_degree), {}, {}};
+  Plane& y = opponents[0];
   for (double& value : y.values) value = (value + 16) / 116;
   const double sigma = 0.5 * kFeatureWidth_deg * per_degree;
   const int radius = int(std::ceil(3 * sigma));
@@ -157,13 +169,9 @@ Features features_of(Plane y, double per_degree) {
   balance(edge);
   balance(point);
   const Plane along_x = convolve_x(y, smooth), along_y = convolve_y(y, smooth);
-  const auto strength = [&](const Kernel& derivative) {
-    const Plane dx = convolve_x(along_y, derivative), dy = convolve_y(along_x, derivative);
-    std::vector<double> out(dx.count());
-    for (std::size_t p = 0; p < out.size(); ++p) out[p] = std::hypot(dx.values[p], dy.values[p]);
-    return out;
-  };
-  return {strength(edge), strength(point)};
+  out.edges = strength(along_x, along_y, edge);
+  out.points = strength(along_x, along_y, point);
+  return out;
 }
 
 void check(const ByteImage& picture, const ByteImage& truth, double pixels_per_degree) {
@@ -180,23 +188,19 @@ FloatImage flip_map(const ByteImage& picture, const ByteImage& truth, double pix
 #ifdef NEPHO_MUTANT_FLIP_WITHOUT_DEGREES
   pixels_per_degree = 1;
 #endif
-  const auto colours = opponent_colours(picture), true_colours = opponent_colours(truth);
-  const auto a = seen_colours(colours, pixels_per_degree);
-  const auto b = seen_colours(true_colours, pixels_per_degree);
-  const Features found = features_of(colours[0], pixels_per_degree);
-  const Features there = features_of(true_colours[0], pixels_per_degree);
+  const Look a = look_at(picture, pixels_per_degree), b = look_at(truth, pixels_per_degree);
   const double most = colour_distance(hunt({0, 1, 0}), hunt({0, 0, 1}));
   const double bend = kBend * most;
   FloatImage out(truth.width, truth.height, 1);
   for (std::size_t p = 0; p < out.count(); ++p) {
     // The rest of the range goes to differences that hardly ever are.
-    const double distance = colour_distance(a[p], b[p]);
+    const double distance = colour_distance(a.colours[p], b.colours[p]);
     const double colour = distance < bend
                               ? kBendValue / bend * distance
                               : kBendValue + (distance - bend) / (most - bend) * (1 - kBendValue);
     // Features that only one picture has.
-    const double feature = std::max(std::abs(found.edge[p] - there.edge[p]),
-                                    std::abs(found.point[p] - there.point[p]));
+    const double feature =
+        std::max(std::abs(a.edges[p] - b.edges[p]), std::abs(a.points[p] - b.points[p]));
     // They make a difference in colour larger, and none out of nothing.
     const double exponent = 1 - std::pow(feature / std::numbers::sqrt2, kFeatureExponent);
     out.values[p] = float(std::clamp(std::pow(colour, exponent), 0.0, 1.0));
