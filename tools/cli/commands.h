@@ -26,6 +26,8 @@ struct InfoOptions {
 
 struct CompareOptions {
   std::string a, b;
+  std::optional<std::string> diff, diff_of, diff_scale, exposure_ev, tone_map, pixels_per_degree;
+  bool json = false;
 };
 
 // Each throws Error for what a user can cause, and prints its result on standard output.

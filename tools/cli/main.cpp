@@ -28,7 +28,8 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope render wrfout_d01.nc --sun 2005-08-28T23:00Z --no-planet -o evening.png
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
   nephoscope info wrfout_d01.nc --check                  and how well the bricks hold it
-  nephoscope compare a.exr b.exr                         how far two pictures are apart)";
+  nephoscope compare a.exr b.exr                         how far two pictures are apart
+  nephoscope compare a.exr b.exr --diff apart.png        and where (FLIP))";
 
 constexpr const char* kRegion = "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF)";
 
@@ -110,6 +111,18 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
       ->group(group);
 }
 
+void add_compare_options(CLI::App& command, CompareOptions& o) {
+  command.add_option("--diff", o.diff, "picture of the differences; .exr, .hdr, .pfm: the numbers");
+  command.add_option("--diff-of", o.diff_of,
+                     "flip (what an eye sees) or luminance (with its sign)");
+  command.add_option("--diff-scale", o.diff_scale,
+                     "where its colours end (flip: 1; luminance: from the picture)");
+  command.add_option("--exposure", o.exposure_ev, "in stops (EV), of linear pictures as shown");
+  command.add_option("--tone-map", o.tone_map, "aces or none; otherwise as B's scene says");
+  command.add_option("--pixels-per-degree", o.pixels_per_degree, "of the eye, for FLIP (67)");
+  command.add_flag("--json", o.json, "for programs");
+}
+
 // A value given twice is a bad value; CLI11 calls it the same as a missing one.
 void refuse_repeated(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands())
@@ -157,6 +170,7 @@ int run(int argc, char** argv) {
       app.add_subcommand("compare", "how far picture A is from picture B, the truth");
   differ->add_option("A", compare.a, "picture")->required();
   differ->add_option("B", compare.b, "the truth")->required();
+  add_compare_options(*differ, compare);
   differ->callback([&] { compare_command(compare); });
 
   try {

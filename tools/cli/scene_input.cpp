@@ -157,10 +157,7 @@ void apply_light(Scene& scene, const RenderOptions& o) {
   if (o.sun) apply_sun(scene, *o.sun);
   if (o.exposure_ev)
     scene.exposure_ev = number_value("--exposure", *o.exposure_ev, "scene", "exposure_ev");
-  if (o.tone_map)
-    scene.tone_map = choice_value("--tone-map", *o.tone_map, "scene", "tone_map") == "none"
-                         ? ToneMap::kNone
-                         : ToneMap::kAces;
+  if (o.tone_map) scene.tone_map = tone_map_value(*o.tone_map);
   if (o.dither) scene.dither = true;
 }
 
