@@ -43,9 +43,7 @@ function(nepho_add_mutant name)
   nepho_add_test_program(${name} SOURCES ${A_SOURCES} LIBS ${A_LIBS}
     DEFINES ${A_DEFINES} ${A_MUTANT})
   add_test(NAME mutant.${name} COMMAND ${name} --gtest_filter=${A_FILTER})
-  # What a mistake measures belongs to no table: the report's file is taken from it.
-  set_tests_properties(mutant.${name} PROPERTIES LABELS "${A_LABELS};mutant"
-    ENVIRONMENT "NEPHO_ACCURACY_OUT=;${A_ENV}")
+  set_tests_properties(mutant.${name} PROPERTIES LABELS "${A_LABELS};mutant" ENVIRONMENT "${A_ENV}")
   if(A_REASON)
     set_tests_properties(mutant.${name} PROPERTIES PASS_REGULAR_EXPRESSION "${A_REASON}")
   else()

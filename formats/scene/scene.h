@@ -20,6 +20,8 @@ struct SourceParameter {
   std::string text;        // for words ("sphere", "y")
   bool is_text = false;
   std::string where = {};  // file, line, column and field, for messages
+  std::string written =
+      {};  // the name as the user wrote it, where `name` is another: base, base_km
 };
 
 struct GeodeticPlace {

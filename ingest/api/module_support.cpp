@@ -51,6 +51,28 @@ void fill(ModuleError& error, const Error::Parts& parts) {
   fill(error.hint, parts.hint);
 }
 
+// Where the ending of a name begins that says its unit in SI: radius_m, water_kg_per_m3.
+std::size_t unit_ending(const std::string& name) {
+  std::size_t end = name.size();
+  for (std::size_t at; (at = name.rfind('_', end - 1)) != std::string::npos && at > 0; end = at) {
+    std::string word = name.substr(at + 1, end - at - 1);
+    while (!word.empty() && word.back() >= '0' && word.back() <= '9') word.pop_back();
+    const auto words = {"kg", "m", "s", "K", "rad", "per"};
+    if (std::ranges::find(words, word) == words.end()) break;
+  }
+  return end;
+}
+
+// "_kg_per_m3" as "kg/m3".
+std::string unit_text(std::string ending) {
+  if (ending.empty()) return "no unit";
+  ending = ending.starts_with("_per_") ? "1" + ending : ending.substr(1);
+  if (const std::size_t at = ending.find("_per_"); at != std::string::npos)
+    ending.replace(at, 5, "/");
+  std::ranges::replace(ending, '_', ' ');
+  return "a unit like " + ending;
+}
+
 }  // namespace
 
 Parameters::Parameters(const SourceRequest& request) : request_(request) {}
@@ -127,6 +149,20 @@ std::string Parameters::choice(const std::string& name, const std::vector<std::s
 void Parameters::finish() const {
   for (const RequestParameter& p : std::span(request_.parameters, request_.parameter_count)) {
     if (std::ranges::find(known_, p.name) != known_.end()) continue;
+    // The host puts the unit into the name: what nobody knows may be known with another one.
+    const std::string name = p.name, base = name.substr(0, unit_ending(name));
+    const auto same = std::ranges::find_if(known_, [&](const std::string& known) {
+      return known.substr(0, unit_ending(known)) == base;
+    });
+    if (same != known_.end() && !p.text) {
+      const bool none = base == name;
+      throw Error(
+          {none ? "missing unit" : "wrong unit", where(name), unit_text(same->substr(base.size())),
+           none
+               ? "none"
+               : "'" + std::string(p.unit && *p.unit ? p.unit : name.substr(base.size() + 1)) + "'",
+           ""});
+    }
     const auto near = did_you_mean(p.name, known_);
     throw Error({"unknown parameter", where(p.name), "one of " + joined(known_), p.name,
                  near ? "did you mean " + *near + "?" : ""});

@@ -1,13 +1,35 @@
 #include "pyramid/serve.h"
 
 #include <algorithm>
+#include <exception>
 #include <limits>
 
 #include "bricks/coarsen.h"
 #include "bricks/quantise.h"
-#include "bricks/source_guard.h"
 
 namespace nepho {
+namespace {
+
+Status refused(Status status) {
+  set_last_error(to_string(status));
+  return status;
+}
+
+template <class Body>
+Status guarded(Body&& body) noexcept {
+  try {
+    body();
+    return Status::kOk;
+  } catch (const std::exception& e) {
+    set_last_error(e.what());
+  } catch (...) {
+    set_last_error("an exception of unknown type");
+  }
+  return Status::kReadFailed;
+}
+
+}  // namespace
+
 Status serve_summary(const VolumeInfo& info, const ServedPyramids& pyramids, NodeKey key,
                      double time_s, NodeSummary& summary) noexcept {
   if (const Status status = check_request(info, key, time_s); status != Status::kOk)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "common/cloud_raster.h"
 #include "common/data_error.h"
 #include "common/planet_scene.h"
 #include "common/planet_view.h"
@@ -68,6 +69,28 @@ double away_m(const glm::dvec3& a, const glm::dvec3& b) {
          std::acos(glm::clamp(glm::dot(glm::normalize(a), glm::normalize(b)), -1.0, 1.0));
 }
 
+double heading_rad(const LocalAxes& axes, const glm::dvec3& direction) {
+  return std::atan2(glm::dot(direction, axes.east), glm::dot(direction, axes.north));
+}
+
+// A map around a direction, on axes of its own, all of one height.
+std::shared_ptr<SurfaceMap> square_about(const glm::dvec3& centre, double half_rad,
+                                         float height_m) {
+  auto map = std::make_shared<SurfaceMap>();
+  const glm::dvec3 east = PlanetGround{kEarth, {}}.axes(centre * kEarth_m).east;
+  map->axes = glm::dmat3(centre, east, glm::cross(centre, east));
+  map->low_rad = {-half_rad, -half_rad};
+  map->step_rad = {half_rad / 15, half_rad / 15};
+  map->nx = map->ny = 31;
+  map->height_m.assign(31 * 31, height_m);
+  map->water.assign(31 * 31, 0.0f);
+  return map;
+}
+// What the data of deck_with_eye() are known to cover.
+std::shared_ptr<SurfaceMap> known_square(const glm::dvec3& middle) {
+  return square_about(middle, 900e3 / kEarth_m, 0);
+}
+
 TEST(CloudMap, holds_the_columns_optical_depth_where_the_cloud_is) {
   const auto source = two_patches();
   const CloudMap map = cloud_map(*source, 0, kEarth);
@@ -98,56 +121,153 @@ TEST(CloudMap, the_cloudiest_place_is_the_thick_patch_and_a_globe_has_no_extent)
   EXPECT_EQ(cloud_map(*cloudy_globe(), 0, kEarth).extent().radius_rad, glm::pi<double>());
 }
 
-TEST(PlanetView, oblique_has_the_cloud_in_the_middle_and_a_fifth_of_sky) {
-  const CloudMap map = cloud_map(*two_patches(), 0, kEarth);
-  const PlanetGround sea{kEarth, {}};
-  const glm::dvec3 place = direction_to(30, -90);
-  for (const double aspect : {16.0 / 9, 1.0, 0.6})
-    for (const double fov_rad : {0.4, 0.75, 1.2}) {
-      const Lens lens{fov_rad, aspect};
-      const Camera c = oblique_view(map, place, sea, lens, std::nullopt).camera;
-      const Seen middle = seen(c, aspect, ecef_m(kEarth, {30, -90, 4000}) - c.eye_m);
-      EXPECT_NEAR(middle.x, 0, 0.05);
-      EXPECT_NEAR(middle.y, 0, 0.1);
-      EXPECT_NEAR(horizon_in_picture(c, aspect), 0.6, 0.03) << aspect << " " << fov_rad;
-      EXPECT_GT(geodetic_height_m(kEarth, c.eye_m), 1.3 * 6500);
-      EXPECT_GT(glm::dot(c.up, glm::normalize(c.eye_m)), 0.999);
-      // The part that it is to show spans the middle.
-      const double part_rad = oblique_part_m(map, kEarth) / kEarth_m;
-      const glm::dvec3 right = glm::normalize(glm::cross(c.target_m - c.eye_m, c.up));
-      const glm::dvec3 side = glm::normalize(place + part_rad * right) * glm::length(c.target_m);
-      EXPECT_NEAR(seen(c, aspect, side - c.eye_m).x, 0.75, 0.08);
+// A deck of cells of 10 km with a clear eye in it, as a source might give it; the rest of a domain
+// of `wide_m` to either side is clear.
+CloudMap deck_with_eye(const glm::dvec3& middle, double deck_m, const glm::dvec3& eye,
+                       double eye_m) {
+  constexpr double kCell_m = 10e3;
+  CloudMap map;
+  map.cell_m = map.finest_cell_m = kCell_m;
+  const LocalAxes axes = PlanetGround{kEarth, {}}.axes(middle * kEarth_m);
+  for (double y_m = -deck_m; y_m <= deck_m; y_m += kCell_m)
+    for (double x_m = -deck_m; x_m <= deck_m; x_m += kCell_m) {
+      const glm::dvec3 d = glm::normalize(middle + (x_m * axes.east + y_m * axes.north) / kEarth_m);
+      if (away_m(d, eye) < eye_m) continue;
+      map.columns.push_back({d, kCell_m * kCell_m, 40, 1000, 7000});
     }
+  return map;
 }
 
-TEST(PlanetView, oblique_has_the_sun_to_the_side) {
-  const CloudMap map = cloud_map(*two_patches(), 0, kEarth);
-  const PlanetGround sea{kEarth, {}};
-  const LocalAxes axes = sea.axes(ecef_m(kEarth, {30, -90, 0}));
-  for (double azimuth = 0; azimuth < 6.2; azimuth += 0.7) {
-    const glm::dvec3 to_sun =
-        0.8 * (std::sin(azimuth) * axes.east + std::cos(azimuth) * axes.north) + 0.6 * axes.up;
-    const Camera c = oblique_view(map, direction_to(30, -90), sea, {}, to_sun).camera;
-    const glm::dvec3 ahead = c.target_m - c.eye_m;
-    const glm::dvec3 level = glm::normalize(ahead - glm::dot(ahead, axes.up) * axes.up);
-    const double aside_deg = glm::degrees(std::acos(glm::dot(level, to_sun) / 0.8));
-    EXPECT_GT(aside_deg, 45) << azimuth;
-    EXPECT_LT(aside_deg, 160) << azimuth;
+constexpr double kWide_m = 900e3;
+const std::pair<double, double> kPlaces[] = {{30, -90}, {0, 179.9}, {89.9, 40}, {-60, -179.5}};
+
+TEST(PlanetView, oblique_finds_the_eye_of_a_deck_at_poles_and_date_line_too) {
+  for (const auto& [latitude_deg, longitude_deg] : kPlaces) {
+    const glm::dvec3 middle = direction_to(latitude_deg, longitude_deg);
+    const LocalAxes axes = PlanetGround{kEarth, {}}.axes(middle * kEarth_m);
+    const glm::dvec3 eye =
+        glm::normalize(middle + (250e3 * axes.east - 180e3 * axes.north) / kEarth_m);
+    const CloudMap map = deck_with_eye(middle, kWide_m, eye, 60e3);
+    constexpr double kPart_m = 150e3;
+    EXPECT_LT(
+        away_m(most_varied(map, 0.5 * kPart_m / kEarth_m, {kEarth, {known_square(middle)}}), eye),
+        kPart_m)
+        << latitude_deg;
+    const Camera c =
+        oblique_view(map, kPart_m, std::nullopt, {kEarth, {known_square(middle)}}, {}, std::nullopt)
+            .camera;
+    EXPECT_LT(away_m(c.target_m, eye), kPart_m) << latitude_deg;
+    // All of the eye is in the picture.
+    for (double turn = 0; turn < 6.2; turn += 0.5) {
+      const glm::dvec3 rim = glm::normalize(
+          eye + 60e3 / kEarth_m * (std::cos(turn) * axes.east + std::sin(turn) * axes.north));
+      const Seen there = seen(c, 16.0 / 9, rim * (kEarth_m + 7000) - c.eye_m);
+      EXPECT_TRUE(there.ahead);
+      EXPECT_LT(std::abs(there.x), 1) << latitude_deg;
+      EXPECT_LT(std::abs(there.y), 1) << latitude_deg;
+    }
+    EXPECT_GT(horizon_in_picture(c, 16.0 / 9), 0.5);
+    EXPECT_LT(horizon_in_picture(c, 16.0 / 9), 1);
   }
 }
 
-// A map around the place, on axes of its own, all of one height.
+TEST(PlanetView, how_much_is_shown_goes_by_cells_tops_and_what_there_is) {
+  const glm::dvec3 middle = direction_to(30, -90);
+  // 107 cells of 10 km across, where there are as many.
+  CloudMap map = deck_with_eye(middle, kWide_m, -middle, 0);
+  EXPECT_NEAR(oblique_part_m(map, kEarth), 535e3, 1);
+  // Cells of 50 m: three times the height of the tops to either side.
+  map.finest_cell_m = 50;
+  EXPECT_NEAR(oblique_part_m(map, kEarth), 21e3, 1);
+  // A deck of 200 km: 2.4 of its rms radius, 200 km * sqrt(2/3) / 2... of a square of half side
+  // 100.
+  map = deck_with_eye(middle, 100e3, -middle, 0);
+  EXPECT_NEAR(oblique_part_m(map, kEarth), 2.4 * 105e3 * std::sqrt(2.0 / 3), 5e3);
+  // One column: eight of its cells.
+  map = deck_with_eye(middle, 0, -middle, 0);
+  ASSERT_EQ(map.columns.size(), 1u);
+  EXPECT_NEAR(oblique_part_m(map, kEarth), 80e3, 1);
+  // A cover of the whole globe is no part.
+  EXPECT_LE(oblique_part_m(cloud_map(*cloudy_globe(), 0, kEarth), kEarth), 0.31 * kEarth_m);
+}
+
+TEST(PlanetView, oblique_looks_from_above_with_the_horizon_in_the_upper_fifth) {
+  const glm::dvec3 place = direction_to(30, -90);
+  const PlanetGround sea{kEarth, {}};
+  for (const double cell_factor : {1.0, 0.02}) {
+    CloudMap map = deck_with_eye(place, 200e3, place, 40e3);
+    map.finest_cell_m *= cell_factor;
+    const double part_m = oblique_part_m(map, kEarth);
+    for (const double aspect : {16.0 / 9, 1.0, 0.6})
+      for (const double fov_rad : {0.4, 0.75, 1.2}) {
+        const Lens lens{fov_rad, aspect};
+        const Camera c = oblique_view(map, part_m, place, sea, lens, std::nullopt).camera;
+        const Seen middle = seen(c, aspect, ecef_m(kEarth, {30, -90, 4000}) - c.eye_m);
+        EXPECT_NEAR(middle.x, 0, 0.01);
+        EXPECT_NEAR(middle.y, 0, 0.02);
+        // Flat weather from higher than towers.
+        EXPECT_NEAR(horizon_in_picture(c, aspect), cell_factor == 1 ? 0.8 : 0.6, 0.03)
+            << aspect << " " << fov_rad;
+        EXPECT_GT(geodetic_height_m(kEarth, c.eye_m), 1.3 * 7000 - 1);
+        EXPECT_GT(glm::dot(c.up, glm::normalize(c.eye_m)), 0.999);
+        // The part spans the picture, unless the eye had to stand higher.
+        const glm::dvec3 right = glm::normalize(glm::cross(c.target_m - c.eye_m, c.up));
+        const glm::dvec3 side =
+            glm::normalize(place + part_m / kEarth_m * right) * glm::length(c.target_m);
+        EXPECT_NEAR(seen(c, aspect, side - c.eye_m).x, 1, 0.08);
+      }
+  }
+}
+
+TEST(PlanetView, oblique_has_the_sun_to_the_side) {
+  const glm::dvec3 place = direction_to(30, -90);
+  const CloudMap map = deck_with_eye(place, 200e3, place, 40e3);
+  const PlanetGround sea{kEarth, {}};
+  for (double azimuth = 0; azimuth < 6.2; azimuth += 0.7) {
+    const LocalAxes axes = sea.axes(ecef_m(kEarth, {30, -90, 0}));
+    const glm::dvec3 to_sun =
+        0.8 * (std::sin(azimuth) * axes.east + std::cos(azimuth) * axes.north) + 0.6 * axes.up;
+    const Camera c = oblique_view(map, 150e3, std::nullopt, sea, {}, to_sun).camera;
+    const LocalAxes there = sea.axes(c.target_m);
+    const double aside_deg = glm::degrees(std::abs(
+        std::remainder(heading_rad(there, to_sun) - heading_rad(there, c.target_m - c.eye_m),
+                       2 * glm::pi<double>())));
+    EXPECT_GT(aside_deg, 39) << azimuth;
+    EXPECT_LT(aside_deg, 121) << azimuth;
+  }
+}
+
+TEST(PlanetView, a_lone_column_and_one_deck_are_in_the_middle) {
+  const glm::dvec3 place = direction_to(47, 11);
+  for (const double deck_m : {0.0, 60e3}) {
+    const CloudMap map = deck_with_eye(place, deck_m, -place, 0);
+    const double part_m = oblique_part_m(map, kEarth);
+    const Camera c =
+        oblique_view(map, part_m, std::nullopt, {kEarth, {known_square(place)}}, {}, std::nullopt)
+            .camera;
+    EXPECT_LT(away_m(c.target_m, place), 0.7 * part_m) << deck_m;
+  }
+}
+
+TEST(CloudRaster, holds_columns_side_by_side_without_gaps_and_ends_with_the_data) {
+  const glm::dvec3 middle = direction_to(30, -90);
+  const CloudMap map = deck_with_eye(middle, 300e3, middle, 50e3);
+  const CloudRaster raster(map, middle, 1500e3, {kEarth, {known_square(middle)}});
+  const float deck = raster.at({150e3, 150e3});
+  EXPECT_GT(deck, 0.45);  // 40 / 53, seven tenths of it: all tops are the same
+  for (double x_m = -230e3; x_m <= 230e3; x_m += 7e3) {
+    EXPECT_NEAR(raster.at({x_m, 150e3}), deck, 0.15 * deck) << x_m;  // two grids beat
+    const glm::dvec2 p{x_m, -0.3 * x_m};
+    EXPECT_NEAR(glm::length(raster.plane_m(raster.direction(p)) - p), 0, 1e-3);
+    EXPECT_NEAR(away_m(raster.direction(p), middle), glm::length(p), 1);
+  }
+  EXPECT_EQ(raster.at({0, 0}), 0);
+  EXPECT_EQ(raster.at({0, 400e3}), 0);                      // clear, and known
+  EXPECT_EQ(raster.at({0, 1300e3}), CloudRaster::kBeyond);  // beyond the ground that is known
+}
+
 std::shared_ptr<SurfaceMap> plateau(double latitude_deg, double longitude_deg, float height_m) {
-  auto map = std::make_shared<SurfaceMap>();
-  const glm::dvec3 centre = direction_to(latitude_deg, longitude_deg);
-  const glm::dvec3 east = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), centre));
-  map->axes = glm::dmat3(centre, east, glm::cross(centre, east));
-  map->low_rad = {-0.15, -0.15};
-  map->step_rad = {0.01, 0.01};
-  map->nx = map->ny = 31;
-  map->height_m.assign(31 * 31, height_m);
-  map->water.assign(31 * 31, 0.0f);
-  return map;
+  return square_about(direction_to(latitude_deg, longitude_deg), 0.15, height_m);
 }
 
 TEST(PlanetGround, heights_are_bilinear_on_the_maps_own_axes) {
@@ -185,14 +305,14 @@ TEST(PlanetGround, heights_are_bilinear_on_the_maps_own_axes) {
 TEST(PlanetView, oblique_stays_clear_of_the_terrain) {
   const CloudMap map = cloud_map(*two_patches(), 0, kEarth);
   const glm::dvec3 place = direction_to(30, -90);
-  const Camera low = oblique_view(map, place, {kEarth, {}}, {}, std::nullopt).camera;
+  const Camera low = oblique_view(map, 100e3, place, {kEarth, {}}, {}, std::nullopt).camera;
   const float wall_m = float(geodetic_height_m(kEarth, low.eye_m) + 5000);
   const auto map_there = plateau(30, -90, wall_m);
   // A valley where the clouds are, high ground all around.
   for (int j = 14; j <= 16; ++j)
     for (int i = 14; i <= 16; ++i) map_there->height_m[std::size_t(31 * j + i)] = 0;
   const PlanetGround ground{kEarth, {map_there}};
-  const Camera high = oblique_view(map, place, ground, {}, std::nullopt).camera;
+  const Camera high = oblique_view(map, 100e3, place, ground, {}, std::nullopt).camera;
   EXPECT_GT(geodetic_height_m(kEarth, high.eye_m), ground.height_m(high.eye_m) + 299);
 }
 
@@ -250,18 +370,34 @@ TEST(PlanetView, standing_eye_is_over_the_ground_and_looks_at_the_cloud) {
 }
 
 TEST(PlanetView, a_place_to_stand_has_the_cloud_ahead_and_not_above) {
-  const CloudMap map = cloud_map(*two_patches(), 0, kEarth);
+  const glm::dvec3 place = direction_to(30, -83);
+  const CloudMap map = deck_with_eye(place, 40e3, -place, 0);
   const PlanetGround ground{kEarth, {}};
-  const glm::dvec3 cloud = direction_to(30, -83);
-  const Stand stand = place_to_stand(map, cloud, ground);
-  const glm::dvec3 here = ecef_m(kEarth, {stand.latitude_deg, stand.longitude_deg, 0});
-  EXPECT_GT(away_m(here, cloud), 3e3);
-  EXPECT_LT(away_m(here, cloud), 41e3);
-  const LocalAxes axes = ground.axes(here);
-  const double heading = glm::radians(*stand.azimuth_deg);
-  EXPECT_GT(glm::dot(glm::normalize(cloud * glm::length(here) - here),
-                     std::sin(heading) * axes.east + std::cos(heading) * axes.north),
-            0.99);
+  for (const double sun_rad : {-1.0, 0.5, 2.5}) {  // whatever its side
+    const LocalAxes about = ground.axes(ecef_m(kEarth, {30, -83, 0}));
+    const glm::dvec3 to_sun =
+        0.8 * (std::sin(sun_rad) * about.east + std::cos(sun_rad) * about.north) + 0.6 * about.up;
+    const Stand stand = place_to_stand(map, place, ground, {0.95, 16.0 / 9}, to_sun);
+    const glm::dvec3 here = ecef_m(kEarth, {stand.latitude_deg, stand.longitude_deg, 0});
+    double nearest_m = 1e9;
+    for (const CloudColumn& c : map.columns)
+      nearest_m = std::min(nearest_m, away_m(c.direction, here));
+    EXPECT_GT(nearest_m, 8e3) << sun_rad;  // beyond half a cell and some way off
+    EXPECT_LT(nearest_m, 60e3) << sun_rad;
+    // Towards some of it, the sun to the side.
+    const LocalAxes axes = ground.axes(here);
+    const double heading = glm::radians(*stand.azimuth_deg);
+    double off_rad = 9;
+    for (const CloudColumn& c : map.columns)
+      off_rad = std::min(off_rad, std::abs(std::remainder(
+                                      heading_rad(axes, c.direction * kEarth_m - here) - heading,
+                                      2 * glm::pi<double>())));
+    EXPECT_LT(off_rad, 0.4) << sun_rad;
+    const double aside_deg = glm::degrees(
+        std::abs(std::remainder(heading_rad(axes, to_sun) - heading, 2 * glm::pi<double>())));
+    EXPECT_GT(aside_deg, 39) << sun_rad;
+    EXPECT_LT(aside_deg, 121) << sun_rad;
+  }
 }
 
 TEST(PlanetView, sun_to_the_side_is_where_it_says) {
@@ -315,12 +451,12 @@ TEST(PlanetScene, takes_the_first_time_with_cloud_by_day) {
   EXPECT_EQ(scene.request.volumes[0].time_s, 18 * 3600.0);
   expect_said(scene, "storm: the first time with cloud, by day, --time 2005-08-28T18:00:00Z");
   expect_said(scene, "sun: where it stood at 2005-08-28T18:00:00Z");
-  expect_said(scene, "view: oblique, over the cloudiest part, --look-from geo:");
+  expect_said(scene, "view: oblique, where the clouds have most structure, --look-from geo:");
   expect_said(scene, "--no-planet");
   const glm::dvec3 up = glm::normalize(shot.camera.target_m);
   EXPECT_GT(glm::dot(*scene.scene.sun.to_sun, up), std::sin(glm::radians(65.0)));  // August, noon
   EXPECT_NEAR(shot.sun_distance_au, 1.01, 0.002);
-  EXPECT_LT(away_m(shot.camera.target_m, direction_to(30, -90)), 150e3);
+  EXPECT_LT(away_m(shot.camera.target_m, direction_to(30, -90)), 250e3);  // within its edge
 }
 
 TEST(PlanetScene, a_night_forecast_gets_a_sun_and_says_so) {

@@ -25,7 +25,7 @@ version_and_help() {
   nephoscope --help >h.txt && has h.txt 'Examples:' && has h.txt 'nephoscope render'
   nephoscope render --help >r.txt
   for option in size look-from look-at fov sun budget-mib step tolerance fetch seed frame fps \
-    density-scale up metres-per-unit grid light exposure explain at heading pitch view time \
+    density-scale up metres-per-unit grid light exposure explain explain-all at heading pitch view time \
     no-planet force; do
     has r.txt "^ *(-o,)?--$option"
   done
@@ -91,6 +91,13 @@ explain_lists_what_was_used() {
   has a.txt '^shader switches:'
   has a.txt '^left out:'
   if grep -qi 'openvdb\|nepho_image_oiio' a.txt; then fail "loaded what the scene does not need"; fi
+  # A picture module brings hundreds of libraries: by name those that it asks for itself.
+  nephoscope render in/s.json --explain -o b.png >b.txt 2>/dev/null || return 0
+  has b.txt '^  nepho_image_oiio.so$' && has b.txt '^  libOpenImageIO\.so' &&
+    has b.txt '^  and [0-9]+ that these need \(--explain-all names them\)$'
+  nephoscope render in/s.json --explain-all -o c.png >c.txt
+  [ "$(grep -c '^  lib.*\.so' c.txt)" -gt "$(grep -c '^  lib.*\.so' b.txt)" ] || fail "names no more"
+  if grep -q 'that these need' c.txt; then fail "counts what it names"; fi
 }
 
 info_for_people_and_programs() {
@@ -135,7 +142,7 @@ planets_views_repeat() {  # a cloud on the shell, with a planet because the scen
  "planet": {}, "image": {"width": 48, "height": 27}, "render": {"probe_pixels": 0}}
 END
   nephoscope render in/s.json -o in/a.ppm >a.txt
-  has a.txt '^assumed: view: oblique, over the cloudiest part, --look-from geo:[0-9.]*,[0-9.]*,[0-9.]+ '
+  has a.txt '^assumed: view: oblique, where the clouds have most structure, --look-from geo:[-0-9.]*,[-0-9.]*,[0-9.]+ '
   has a.txt '^assumed: sun: 35 degrees high to the side, --sun [0-9.]+,[0-9.]+ \(the data have no date\)$'
   nephoscope render in/a.ppm -o in/b.ppm >/dev/null
   nephoscope compare in/a.ppm in/b.ppm >same.txt && has same.txt 'bit for bit'
@@ -159,6 +166,11 @@ END
   nephoscope compare in/e.ppm in/f.ppm >same.txt
   rms=$(sed -n 's/^rms.*: \([0-9.e-]*\) %.*/\1/p' same.txt)
   awk -v rms="$rms" 'BEGIN { exit !(rms < 3) }' || { cat same.txt; fail "another view"; }
+  # Points are over the scene's own planet, and stay where they were put.
+  sed 's/"planet": {}/"planet": {"radius_m": 3400000}/' in/s.json >in/m.json
+  sed -i 's/"chart": "shell", "sigma": "300 km", "sigma_z": "1500 m"/"sigma": "3 km"/; s/, "top": "12 km"//' in/m.json
+  nephoscope render in/m.json --look-from geo:0,0,1000 --look-at geo:1,0,0 -o in/m.ppm >/dev/null
+  nephoscope info in/m.ppm >m.txt && has m.txt '^ *3401000'
   # A stand or a view gives way to an eye, and the other way round.
   nephoscope render in/e.ppm --look-from geo:46,11,9000 -o in/g.ppm >/dev/null
   nephoscope render in/g.ppm --at 46,11 --heading 90 --pitch 5 -o in/h.ppm >h.txt

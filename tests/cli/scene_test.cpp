@@ -198,6 +198,22 @@ TEST(SceneFile, what_is_written_reads_back_to_the_same_bits) {
   EXPECT_TRUE(back.dither);
 }
 
+TEST(SceneFile, points_are_over_the_scenes_own_planet) {
+  const Scene scene = parse("{\"volumes\": [" + kVolume + R"(],
+      "planet": {"equatorial_m": 3400000, "polar_m": 3380000},
+      "camera": {"look_from": {"lat_deg": 0, "lon_deg": 90, "height_m": 1000},
+                 "look_at": {"lat_deg": 90, "lon_deg": 0, "height_m": 0}}})");
+  EXPECT_LT(glm::length(*scene.camera.eye_m - glm::dvec3(0, 3401000, 0)), 1e-6);
+  EXPECT_LT(glm::length(*scene.camera.target_m - glm::dvec3(0, 0, 3380000)), 1e-6);
+}
+
+TEST(Parameter, keeps_the_name_as_it_was_written) {
+  EXPECT_EQ(make_parameter("base", "5 s", "x").name, "base_s");
+  EXPECT_EQ(make_parameter("base", "5 s", "x").written, "base");
+  EXPECT_EQ(make_parameter("base_km", "5", "x").written, "base_km");
+  EXPECT_EQ(make_parameter("base_m", "5", "x").written, "");
+}
+
 // The same for what a scene has on a planet.
 TEST(SceneFile, a_planet_reads_back_to_the_same_bits) {
   Scene scene = parse(R"({"volumes": [{"source": "netcdf", "files": ["a.nc"],

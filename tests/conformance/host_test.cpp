@@ -132,6 +132,8 @@ TEST(Host, ParametersAreCheckedAndNamed) {
     std::vector<std::string> parts;
   } cases[] = {
       {{number("radius", 3)}, {"unknown parameter", "'radius'", "max_level"}},
+      {{number("size_x", 3)}, {"missing unit", "'size_x'", "a unit like m"}},
+      {{number("size_x_kg_per_m3", 3)}, {"wrong unit", "'kg_per_m3'", "a unit like m"}},
       {{word("kind", "sphere"), number("radius_n", 3)},
        {"unknown parameter", "did you mean radius_m?"}},
       {{word("kind", "spere")}, {"unknown word", "did you mean sphere?", "half_space"}},

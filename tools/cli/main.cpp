@@ -143,6 +143,7 @@ int run(int argc, char** argv) {
   draw->add_option("INPUT", render.inputs, "SCENE.json, PICTURE, or data FILES")->required();
   draw->add_option("-o,--output", render.output, "picture: .png .exr .hdr .pfm .ppm");
   draw->add_flag("--explain", render.explain, "what was loaded, allocated, run, and left out");
+  draw->add_flag("--explain-all", render.explain_all, "the same, with every library by name");
   add_quality_options(*draw, render);
   add_camera_options(*draw, render);
   add_data_options(*draw, render.grid, render.up, render.metres_per_unit, render.density_scale,

@@ -123,8 +123,10 @@ void render_command(const RenderOptions& options) {
   file.commit();
   libraries.picture_written = mapped_libraries();
   print_result(output, opened, error, find_exposure);
-  if (options.explain)
-    std::printf("%s", explanation(opened, result, context->description(), libraries).c_str());
+  if (options.explain || options.explain_all)
+    std::printf("%s",
+                explanation(opened, result, context->description(), libraries, options.explain_all)
+                    .c_str());
   if (options.explain_macros)
     for (const std::string& macro : result.report.shader_switches)
       std::printf("macro: %s\n", macro.c_str());

@@ -1,5 +1,7 @@
 #include "cli/report.h"
 
+#include <dlfcn.h>
+#include <link.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -70,6 +72,41 @@ bool has_ice(const std::unique_ptr<BrickSource>& source) {
   });
 }
 
+// What the modules of this process ask for themselves (DT_NEEDED), from the loader's own list.
+std::vector<std::string> needed_by_modules() {
+  std::vector<std::string> names;
+  link_map* library = nullptr;
+  void* const program = dlopen(nullptr, RTLD_NOW);
+  if (!program || dlinfo(program, RTLD_DI_LINKMAP, &library) != 0) return names;
+  for (; library; library = library->l_next) {
+    const std::string path = library->l_name;
+    const std::string name = path.substr(path.rfind('/') + 1);
+    if (!name.starts_with("nepho_") && !name.starts_with("libnepho_")) continue;
+    const char* texts = nullptr;
+    for (const ElfW(Dyn)* entry = library->l_ld; entry->d_tag != DT_NULL; ++entry)
+      if (entry->d_tag == DT_STRTAB) texts = reinterpret_cast<const char*>(entry->d_un.d_ptr);
+    for (const ElfW(Dyn)* entry = library->l_ld; texts && entry->d_tag != DT_NULL; ++entry)
+      if (entry->d_tag == DT_NEEDED) names.emplace_back(texts + entry->d_un.d_val);
+  }
+  dlclose(program);
+  return names;
+}
+
+// By name: modules and what they ask for; what those need in turn is counted.
+std::vector<std::string> grouped(const std::vector<std::string>& libraries) {
+  const std::vector<std::string> needed = needed_by_modules();
+  std::vector<std::string> lines;
+  for (const std::string& name : libraries)
+    if (name.find("nepho_") != std::string::npos ||
+        std::ranges::any_of(needed, [&](const std::string& wanted) {
+          return name == wanted || name.starts_with(wanted + ".");  // libx.so.2 is libx.so.2.4.7
+        }))
+      lines.push_back(name);
+  if (const std::size_t rest = libraries.size() - lines.size(); rest > 0)
+    lines.push_back("and " + std::to_string(rest) + " that these need (--explain-all names them)");
+  return lines;
+}
+
 }  // namespace
 
 std::vector<std::string> mapped_libraries() {
@@ -104,16 +141,20 @@ Usage usage_now() {
 }
 
 std::string explanation(const OpenedScene& opened, const RenderResult& result,
-                        const std::string& context, const Libraries& libraries) {
+                        const std::string& context, const Libraries& libraries, bool all) {
+  const auto shown = [&](const std::vector<std::string>& names) {
+    return all ? names : grouped(names);
+  };
   const RenderReport& report = result.report;
   std::ostringstream out;
   out << "device: " << context << "; " << report.device << '\n';
   list(out, "modules loaded:", SourceHost::loaded());
-  list(out, "libraries that the scene brought in:", added(libraries.device, libraries.scene_open));
+  list(out, "libraries that the scene brought in:",
+       shown(added(libraries.device, libraries.scene_open)));
   std::vector<std::string> of_picture = added(libraries.start, libraries.format_known);
   std::ranges::copy(added(libraries.scene_open, libraries.picture_written),
                     std::back_inserter(of_picture));
-  list(out, "libraries that the picture brought in:", of_picture);
+  list(out, "libraries that the picture brought in:", shown(of_picture));
   out << "volumes:\n";
   for (const VolumeReport& v : report.volumes)
     out << format(

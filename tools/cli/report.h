@@ -25,9 +25,10 @@ struct Libraries {
   std::vector<std::string> start, format_known, device, scene_open, picture_written;
 };
 
-// What --explain prints: modules and the libraries that came with them, bricks, bytes, passes,
+// What --explain prints: modules and the libraries that they ask for (`all`: each one that came
+// with them), bricks, bytes, passes,
 // switches, and what was left out.
 std::string explanation(const OpenedScene& opened, const RenderResult& result,
-                        const std::string& context, const Libraries& libraries);
+                        const std::string& context, const Libraries& libraries, bool all);
 
 }  // namespace nepho

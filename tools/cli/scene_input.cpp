@@ -40,14 +40,13 @@ std::string ending_of(const fs::path& path) {
   return ending;
 }
 
-// "x,y,z" in the scene's local metres, or "geo:LAT,LON,HEIGHT".
-glm::dvec3 point_value(const std::string& option, const std::string& text, const Placement& frame) {
+// "x,y,z" in the scene's local metres, or "geo:LAT,LON,HEIGHT" over its planet's ellipsoid.
+glm::dvec3 point_value(const std::string& option, const std::string& text, const Scene& scene) {
   constexpr const char* shape = "x,y,z in metres, or geo:LAT,LON,HEIGHT";
   const bool geodetic = text.starts_with("geo:");
   const std::vector<double> v = list_value(option, geodetic ? text.substr(4) : text, 3, shape);
-  if (!geodetic) return to_ecef(frame, {v[0], v[1], v[2]});
-  const Placement place = placement_of({v[0], v[1], v[2], 0});
-  return {place.origin_ecef_m[0], place.origin_ecef_m[1], place.origin_ecef_m[2]};
+  if (!geodetic) return to_ecef(scene_frame(scene), {v[0], v[1], v[2]});
+  return ecef_m(scene.planet ? scene.planet->body : Ellipsoid::wgs84(), {v[0], v[1], v[2]});
 }
 
 // "LAT,LON" or "LAT,LON,HEIGHT".
@@ -109,15 +108,14 @@ void apply_stand(Scene& scene, const RenderOptions& o) {
 }
 
 void apply_camera(Scene& scene, const RenderOptions& o) {
-  const Placement frame = scene_frame(scene);
   if (o.look_from || o.look_at) {  // worked out for another view
     scene.camera.up.reset();
     scene.camera.stand.reset();
     scene.camera.view = View::kAuto;
   }
   apply_stand(scene, o);
-  if (o.look_from) scene.camera.eye_m = point_value("--look-from", *o.look_from, frame);
-  if (o.look_at) scene.camera.target_m = point_value("--look-at", *o.look_at, frame);
+  if (o.look_from) scene.camera.eye_m = point_value("--look-from", *o.look_from, scene);
+  if (o.look_at) scene.camera.target_m = point_value("--look-at", *o.look_at, scene);
   if (o.fov_deg)
     scene.camera.vertical_fov_rad =
         glm::radians(number_value("--fov", *o.fov_deg, "camera", "fov_deg"));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kEnoughNodes = 300;      // some ten thousand columns
 constexpr double kSeen_per_m = 1e-5;           // 100 km of sight: thinner is no edge of a cloud
-constexpr std::size_t kMostCandidates = 4000;  // of the search for the cloudiest place
+constexpr std::size_t kMostCandidates = 1000;  // of the search for the cloudiest place
 
 double angle_rad(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
@@ -121,6 +121,48 @@ void add_brick(const VolumeInfo& info, NodeKey key, const std::vector<double>& b
     }
 }
 
+// Of a Gaussian around a place: the part where there are data, from points that share it evenly.
+double known_share(const glm::dvec3& place, double width_rad, const PlanetGround& ground) {
+  if (ground.maps.empty()) return 1;
+  constexpr int kPoints = 24;
+  constexpr double kGoldenTurn_rad = 2.399963229728653;
+  const LocalAxes axes = ground.axes(place * ground.body.equatorial_m);
+  int known = 0;
+  for (int n = 0; n < kPoints; ++n) {
+    const double away_rad = width_rad * std::sqrt(-2 * std::log(1 - (n + 0.5) / kPoints));
+    const double turn_rad = kGoldenTurn_rad * n;
+    const glm::dvec3 at =
+        place + away_rad * (std::cos(turn_rad) * axes.east + std::sin(turn_rad) * axes.north);
+    known += ground.known(at * ground.body.equatorial_m);
+  }
+  return double(known) / kPoints;
+}
+
+// Where `score` of the place and of the mean and the mean square of cloudiness under a Gaussian is
+// greatest.
+template <class Score>
+glm::dvec3 best_place(const CloudMap& map, double width_rad, double body_m, Score&& score) {
+  const std::size_t step = 1 + map.columns.size() / kMostCandidates;
+  const double far = std::cos(std::min(4 * width_rad, glm::pi<double>()));
+  const double all_m2 = glm::two_pi<double>() * width_rad * width_rad * body_m * body_m;
+  glm::dvec3 best = map.columns.front().direction;
+  double most = -1;
+  for (std::size_t c = 0; c < map.columns.size(); c += step) {
+    const glm::dvec3& candidate = map.columns[c].direction;
+    double mean = 0, square = 0;
+    for (const CloudColumn& other : map.columns) {
+      if (glm::dot(other.direction, candidate) < far) continue;
+      const double apart = glm::length(other.direction - candidate) / width_rad;
+      const double weight = other.area_m2 / all_m2 * std::exp(-0.5 * apart * apart);
+      mean += weight * other.cloudiness();
+      square += weight * other.cloudiness() * other.cloudiness();
+    }
+    const double found = score(candidate, mean, square);
+    if (found > most) most = found, best = candidate;
+  }
+  return best;
+}
+
 }  // namespace
 
 Cap CloudMap::extent() const {
@@ -134,6 +176,27 @@ Cap CloudMap::extent() const {
   Cap cap{glm::normalize(sum), 0};
   for (const CloudColumn& c : columns)
     cap.radius_rad = std::max(cap.radius_rad, angle_rad(cap.direction, c.direction));
+  return cap;
+}
+
+Cap CloudMap::bulk() const {
+  const auto cover_m2 = [](const CloudColumn& c) {
+    return (1 - std::exp(-c.optical_depth)) * c.area_m2;  // what hides the ground
+  };
+  constexpr double kSquare = 2.4;  // corner of a square over its rms radius (1.73), and some margin
+  glm::dvec3 sum(0.0);
+  double all = 0, squares = 0;
+  for (const CloudColumn& c : columns) {
+    sum += cover_m2(c) * c.direction;
+    all += cover_m2(c);
+  }
+  if (!(glm::length(sum) > 0.1 * all)) return {{0, 0, 1}, glm::pi<double>()};
+  Cap cap{glm::normalize(sum), 0};
+  for (const CloudColumn& c : columns) {
+    const double away_rad = angle_rad(cap.direction, c.direction);
+    squares += cover_m2(c) * away_rad * away_rad;
+  }
+  cap.radius_rad = kSquare * std::sqrt(squares / all);
   return cap;
 }
 
@@ -170,21 +233,19 @@ void append(CloudMap& map, const CloudMap& more) {
 }
 
 glm::dvec3 cloudiest(const CloudMap& map, double width_rad) {
-  const std::size_t step = 1 + map.columns.size() / kMostCandidates;
-  const double far = std::cos(std::min(4 * width_rad, glm::pi<double>()));
-  glm::dvec3 best = map.columns.front().direction;
-  double most = -1;
-  for (std::size_t c = 0; c < map.columns.size(); c += step) {
-    const glm::dvec3& candidate = map.columns[c].direction;
-    double sum = 0;
-    for (const CloudColumn& other : map.columns) {
-      if (glm::dot(other.direction, candidate) < far) continue;
-      const double apart = glm::length(other.direction - candidate) / width_rad;
-      sum += other.cloudiness() * other.area_m2 * std::exp(-0.5 * apart * apart);
-    }
-    if (sum > most) most = sum, best = candidate;
-  }
-  return best;
+  return best_place(map, width_rad, 1, [](const glm::dvec3&, double mean, double) { return mean; });
+}
+
+glm::dvec3 most_varied(const CloudMap& map, double width_rad, const PlanetGround& ground) {
+#ifdef NEPHO_MUTANT_THICKEST
+  return cloudiest(map, width_rad + 0 * ground.body.equatorial_m);
+#endif
+  const auto variance = [&](const glm::dvec3& place, double mean, double square) {
+    const double known = known_share(place, width_rad, ground);
+    if (!(known > 0)) return 0.0;
+    return known * std::max(0.0, square / known - mean * mean / (known * known));
+  };
+  return best_place(map, width_rad, ground.body.equatorial_m, variance);
 }
 
 }  // namespace nepho

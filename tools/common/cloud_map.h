@@ -6,6 +6,7 @@
 
 #include "bricks/brick_source.h"
 #include "bricks/shell_chart.h"
+#include "common/planet_ground.h"
 
 namespace nepho {
 
@@ -35,6 +36,9 @@ struct CloudMap {
   bool empty() const { return columns.empty(); }
   // The smallest cap about the clouds' middle; radius pi where they are all around.
   Cap extent() const;
+  // Where most of what hides the ground is: about its middle, as far as 2.4 times the rms distance
+  // from there (a square's corners are at 1.73). Single columns far off count for little.
+  Cap bulk() const;
 };
 
 // Reads bricks of the first level that has some hundred nodes with cloud (all, or those that touch
@@ -46,5 +50,8 @@ void append(CloudMap& map, const CloudMap& more);
 // The direction with the most cloud around it: cloudiness times area under a Gaussian of this
 // half width. The map must not be empty.
 glm::dvec3 cloudiest(const CloudMap& map, double width_rad);
+// The one where cloudiness varies most under the same Gaussian, clear sky counted as 0: edges and
+// gaps rather than an overcast. Not where the data end, as far as their ground tells.
+glm::dvec3 most_varied(const CloudMap& map, double width_rad, const PlanetGround& ground);
 
 }  // namespace nepho

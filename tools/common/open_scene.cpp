@@ -158,13 +158,25 @@ Camera frame_freely(OpenedScene& opened, const Placement& frame) {
   return camera;
 }
 
+// A source knows its parameters by their names in SI; the user reads those that he wrote.
+void name_as_written(std::string& text, const SourceParameter& parameter) {
+  const std::string name = "'" + parameter.name + "'", written = "'" + parameter.written + "'";
+  if (parameter.written.empty()) return;
+  for (std::size_t at = 0; (at = text.find(name, at)) != std::string::npos; at += written.size())
+    text.replace(at, name.size(), written);
+}
+
 [[noreturn]] void rethrow_with_place(const Error& error, const VolumeSpec& volume) {
   Error::Parts parts = error.parts();
   std::string where = volume.where;
-  for (const SourceParameter& parameter : volume.parameters)
-    if (parts.where.find("'" + parameter.name + "'") != std::string::npos ||
-        parts.found.find("'" + parameter.name + "'") != std::string::npos)
-      where = parameter.where;
+  for (const SourceParameter& parameter : volume.parameters) {
+    const std::string name = "'" + parameter.name + "'";
+    if (parts.where.find(name) == std::string::npos && parts.found.find(name) == std::string::npos)
+      continue;
+    where = parameter.where;
+    name_as_written(parts.where, parameter);
+    name_as_written(parts.found, parameter);
+  }
   if (!where.empty()) parts.where = where + (parts.where.empty() ? "" : ": ") + parts.where;
   throw Error(parts);
 }

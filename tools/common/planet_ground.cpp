@@ -40,6 +40,13 @@ double PlanetGround::height_m(const glm::dvec3& ecef_m) const {
   return 0;
 }
 
+bool PlanetGround::known(const glm::dvec3& ecef_m) const {
+  double ignored_m = 0;
+  return maps.empty() || std::ranges::any_of(maps, [&](const auto& map) {
+           return map && map_height_m(*map, body, ecef_m, ignored_m);
+         });
+}
+
 glm::dvec3 PlanetGround::point_m(const glm::dvec3& direction, double height_m) const {
   GeodeticPoint point = geodetic_point(body, direction * body.equatorial_m);
   point.height_m = height_m;

@@ -18,6 +18,8 @@ struct PlanetGround {
 
   // Over the ellipsoid, below or above `ecef_m`; 0 outside all maps.
   double height_m(const glm::dvec3& ecef_m) const;
+  // Whether there are data below or above `ecef_m`: no map says that there are none.
+  bool known(const glm::dvec3& ecef_m) const;
   // The point of the ellipsoid under a direction from the centre, raised by `height_m`.
   glm::dvec3 point_m(const glm::dvec3& direction, double height_m) const;
   // East, north and the ellipsoid's normal; at a pole, east is +y.

@@ -122,7 +122,9 @@ class Framing {
   void choose_day(std::size_t lead) {
     const auto place = known_place();
     if (!place && is_globe()) return;  // there it is day somewhere
-    const glm::dvec3 about = place ? *place : ground_.point_m(cloudiest_place(), 0);
+    const glm::dvec3 about =
+        place ? *place
+              : ground_.point_m(map().empty() ? middle_of_ground() : map().bulk().direction, 0);
     const glm::dvec3 up = ground_.axes(about).up;
     for (const double t : info(lead).times_s) {
       if (t < time_s(lead)) continue;
@@ -162,15 +164,23 @@ class Framing {
     if (scene_.camera.view != View::kAuto) return scene_.camera.view == View::kGlobe;
     return map().empty() ? ground_.maps.empty() : map().extent().radius_rad > kRegion_rad;
   }
-  // From the whole map, then once more among the finer columns around.
-  glm::dvec3 cloudiest_place() {
+  // Where to look within the whole map: a first guess.
+  glm::dvec3 varied_place(double part_m) {
     if (map().empty()) return middle_of_ground();
-    const double part_rad = oblique_part_m(map(), ground_.body) / ground_.body.equatorial_m;
-    const glm::dvec3 first = cloudiest(map(), part_rad);
-    if (map().cell_m < 1.5 * map().finest_cell_m) return first;
-    const CloudMap finer =
-        map_within(Cap{first, 2 * std::max(part_rad, map().cell_m / ground_.body.equatorial_m)});
-    return finer.empty() ? first : cloudiest(finer, part_rad);
+    const double width_m = std::max(part_m, map().cell_m);
+    return most_varied(map(), width_m / ground_.body.equatorial_m, ground_);
+  }
+  // Whether the whole map tells such a part apart, and is little more.
+  bool map_shows(double part_m) {
+    const double body_m = ground_.body.equatorial_m;
+    return map().empty() || (map().cell_m < std::max(part_m / 10, 1.5 * map().finest_cell_m) &&
+                             map().extent().radius_rad * body_m < 6 * part_m);
+  }
+  // Finer columns around a place.
+  CloudMap map_about(const glm::dvec3& place, double part_m) {
+    const double radius_m = 3 * std::max(part_m, map().cell_m);
+    const CloudMap finer = map_within(Cap{place, radius_m / ground_.body.equatorial_m});
+    return finer.empty() ? map() : finer;
   }
   glm::dvec3 middle_of_ground() const {
     if (ground_.maps.empty()) return {1, 0, 0};
@@ -222,8 +232,7 @@ class Framing {
   void stand() {
     const glm::dvec3* sun = scene_.sun.to_sun ? &*scene_.sun.to_sun : nullptr;
     const auto to_sun = sun ? std::optional(*sun) : std::nullopt;
-    Stand stand = scene_.camera.stand ? *scene_.camera.stand
-                                      : place_to_stand(map(), cloudiest_place(), ground_);
+    Stand stand = scene_.camera.stand ? *scene_.camera.stand : stand_by_clouds(to_sun);
     const glm::dvec3 here =
         glm::normalize(ecef_m(ground_.body, {stand.latitude_deg, stand.longitude_deg, 0}));
     const bool open = !stand.azimuth_deg || !stand.elevation_deg;
@@ -239,19 +248,30 @@ class Framing {
              stand.latitude_deg, stand.longitude_deg, stand.eye_height_m, angles_deg.x,
              angles_deg.y, glm::degrees(lens_.vertical_fov_rad)));
   }
+  Stand stand_by_clouds(const std::optional<glm::dvec3>& to_sun) {
+    const double part_m = standing_part_m(map(), ground_.body);
+    const glm::dvec3 place = varied_place(part_m);
+    return place_to_stand(map_shows(part_m) ? map() : map_about(place, part_m), place, ground_,
+                          lens_, to_sun);
+  }
   void look_at_globe() {
     view_ = globe_view(map(), ground_, lens_, scene_.sun.to_sun);
-    state_view("the globe, from its sunlit side with the most cloud");
+    state_view("the globe, from its sunlit side with the most structure");
   }
   void look_down() {
     const CameraSpec& wish = scene_.camera;
-    const glm::dvec3 place = wish.target_m ? glm::normalize(*wish.target_m) : cloudiest_place();
-    view_ = oblique_view(map(), place, ground_, lens_, scene_.sun.to_sun);
+    const double part_m = oblique_part_m(map(), ground_.body);
+    std::optional<glm::dvec3> target;
+    if (wish.target_m) target = glm::normalize(*wish.target_m);
+    if (map().empty()) target = target.value_or(middle_of_ground());
+    const CloudMap near =
+        map_shows(part_m) ? map() : map_about(target ? *target : varied_place(part_m), part_m);
+    view_ = oblique_view(near, part_m, target, ground_, lens_, scene_.sun.to_sun);
     if (wish.target_m) view_.camera.target_m = *wish.target_m;
     if (wish.eye_m) look(*wish.eye_m, view_.camera.target_m);
     state_view(wish.target_m ? "oblique, on the given target"
-               : wish.eye_m  ? "on the cloudiest part"
-                             : "oblique, over the cloudiest part");
+               : wish.eye_m  ? "on the clouds"
+                             : "oblique, where the clouds have most structure");
   }
   void state_view(const char* what) {
     opened_.assumptions.push_back(std::string("view: ") + what + ", --look-from " +
@@ -351,26 +371,6 @@ std::optional<Ellipsoid> body_of(const OpenedScene& opened) {
       return shell ? shell->body() : Ellipsoid::wgs84();
     }
   return std::nullopt;
-}
-
-std::int64_t utc_of(const VolumeInfo& info, double time_s) {
-  return info.time_origin_ns + std::int64_t(std::llround(time_s * 1e9));
-}
-
-double time_at(const VolumeInfo& info, std::int64_t utc_ns, const std::string& where) {
-  constexpr std::int64_t kHalfMillisecond_ns = 500'000;  // times as float seconds or days
-  std::string listed;
-  int count = 0;
-  for (const double t : info.times_s) {
-    const std::int64_t own_ns = utc_of(info, t);
-    if (std::abs(own_ns - utc_ns) <= kHalfMillisecond_ns) return t;
-    if (++count <= 12) listed += (count > 1 ? ", " : "") + utc_text(own_ns);
-  }
-  if (count > 12) listed += ", ... (" + std::to_string(count) + ")";
-  const bool no_date = !dated(info);
-  throw Error({"no such time", where,
-               no_date ? "a time in seconds: its data have no date" : "one of " + listed,
-               utc_text(utc_ns), ""});
 }
 
 double white_in_the_sun(const OpenedScene& opened) {

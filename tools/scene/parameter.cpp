@@ -66,15 +66,16 @@ std::string si_ending(const Dimension& d) {
   return above + (below.empty() ? "" : "_per" + below);
 }
 
-SourceParameter in_si(const std::string& base, const Unit& unit, const std::string& unit_text,
-                      double value, const std::string& where) {
-  return {base + si_ending(unit.dimension), unit_text, unit.to_si(value), "", false, where};
+SourceParameter in_si(const std::string& written, const std::string& base, const Unit& unit,
+                      const std::string& unit_text, double value, const std::string& where) {
+  const std::string name = base + si_ending(unit.dimension);
+  return {name, unit_text, unit.to_si(value), "", false, where, name == written ? "" : written};
 }
 
 SourceParameter number_parameter(const std::string& name, double value, const std::string& where) {
   const std::optional<NamedUnit> named = unit_of_name(name);
-  if (!named) return {name, "", value, "", false, where};
-  return in_si(named->base, named->unit, named->text, value, where);
+  if (!named) return {name, "", value, "", false, where, ""};
+  return in_si(name, named->base, named->unit, named->text, value, where);
 }
 
 SourceParameter unit_parameter(const std::string& name, double value, const std::string& unit_text,
@@ -90,7 +91,7 @@ SourceParameter unit_parameter(const std::string& name, double value, const std:
   const std::optional<NamedUnit> named = unit_of_name(name);
   if (named && named->unit.dimension != unit.dimension)
     throw Error({"wrong unit", where, "a unit like " + named->text, "'" + unit_text + "'", ""});
-  return in_si(named ? named->base : name, unit, unit_text, value, where);
+  return in_si(name, named ? named->base : name, unit, unit_text, value, where);
 }
 
 }  // namespace
@@ -101,7 +102,7 @@ SourceParameter make_parameter(const std::string& name, const JsonValue& value,
     case JsonValue::Kind::kNumber:
       return number_parameter(name, value.number, where);
     case JsonValue::Kind::kBool:
-      return {name, "", value.boolean ? 1.0 : 0.0, "", false, where};
+      return {name, "", value.boolean ? 1.0 : 0.0, "", false, where, ""};
     case JsonValue::Kind::kString:
       break;
     default:
@@ -115,7 +116,7 @@ SourceParameter make_parameter(const std::string& name, const JsonValue& value,
                  "'" + value.text + "'", "write a dimensionless number without quotes"});
   if (number && rest[0] == ' ')
     return unit_parameter(name, *number, rest.substr(rest.find_first_not_of(' ')), where);
-  return {name, "", 0, value.text, true, where};
+  return {name, "", 0, value.text, true, where, ""};
 }
 
 SourceParameter make_parameter(const std::string& name, const std::string& text,

@@ -83,10 +83,13 @@ VolumeSpec read_volume(const ObjectReader& in, const std::filesystem::path& fold
 
 // Eye or target, in whichever of the three ways it is given.
 std::optional<glm::dvec3> read_spot(const ObjectReader& in, const std::string& name,
-                                    const Placement& frame) {
+                                    const Placement& frame, const Ellipsoid& body) {
   in.at_most_one({name + "_m", name, name + "_ecef_m"});
   if (const auto local_m = in.vector(name + "_m")) return to_ecef(frame, *local_m);
-  if (const auto point = in.object(name)) return origin(placement_of(read_point(*point)));
+  if (const auto point = in.object(name)) {
+    const GeodeticPlace place = read_point(*point);
+    return ecef_m(body, {place.latitude_deg, place.longitude_deg, place.height_m});
+  }
   return in.vector(name + "_ecef_m");
 }
 
@@ -110,10 +113,10 @@ View read_view(const ObjectReader& in) {
                             : View::kAuto;
 }
 
-CameraSpec read_camera(const ObjectReader& in, const Placement& frame) {
+CameraSpec read_camera(const ObjectReader& in, const Placement& frame, const Ellipsoid& body) {
   CameraSpec camera;
-  camera.eye_m = read_spot(in, "look_from", frame);
-  camera.target_m = read_spot(in, "look_at", frame);
+  camera.eye_m = read_spot(in, "look_from", frame, body);
+  camera.target_m = read_spot(in, "look_at", frame, body);
   if (camera.eye_m && camera.target_m && *camera.eye_m == *camera.target_m)
     throw Error(
         {"camera looks nowhere", in.where(), "look_from apart from look_at", "the same point", ""});
@@ -251,13 +254,14 @@ Scene parse_scene(std::string_view text, const std::string& source_name,
   if (!scene.place && !scene.volumes.front().place) scene.place = camera_point(in);
 
   const Placement frame = scene_frame(scene);
-  if (const auto camera = in.object("camera")) scene.camera = read_camera(*camera, frame);
-  if (const auto sun = in.object("sun"))
-    scene.sun = read_sun(*sun, has_frame(scene) ? &frame : nullptr);
-  if (const auto sky = in.object("sky")) scene.sky = read_sky(*sky, frame);
   scene.no_planet = in.is_none("planet");
   if (!scene.no_planet) in.at_most_one({"sky", "planet"});
   if (const auto planet = in.object("planet")) scene.planet = read_planet(*planet);
+  const Ellipsoid body = scene.planet ? scene.planet->body : Ellipsoid::wgs84();
+  if (const auto camera = in.object("camera")) scene.camera = read_camera(*camera, frame, body);
+  if (const auto sun = in.object("sun"))
+    scene.sun = read_sun(*sun, has_frame(scene) ? &frame : nullptr);
+  if (const auto sky = in.object("sky")) scene.sky = read_sky(*sky, frame);
   if (const auto image = in.object("image")) {
     scene.render.width = image->integer("width").value_or(scene.render.width);
     scene.render.height = image->integer("height").value_or(scene.render.height);

@@ -4,7 +4,6 @@
 
 #include "api/module_support.h"
 #include "bricks/coarsen.h"
-#include "bricks/source_guard.h"
 #include "pyramid/serve.h"
 #include "sources/analytic/options.h"
 
@@ -40,8 +39,10 @@ class AnalyticSource final : public BrickSource {
   }
   Status point_extinction_per_m(const glm::dvec3& ecef_m, double time_s,
                                 double& extinction_per_m) const noexcept override {
-    if (std::ranges::find(info_.times_s, time_s) == info_.times_s.end())
-      return refused(Status::kNoSuchTime);
+    if (std::ranges::find(info_.times_s, time_s) == info_.times_s.end()) {
+      set_last_error(to_string(Status::kNoSuchTime));
+      return Status::kNoSuchTime;
+    }
     RootPosition position = info_.chart->locate(ecef_m);
     // A sample on the chart's face is inside, though its position is a rounding off.
     const glm::dvec3 inside = glm::clamp(position.q, 0.0, 1.0);

@@ -11,7 +11,6 @@
 #include <optional>
 #include <utility>
 
-#include "bricks/source_guard.h"
 #include "geo/place.h"
 #include "pyramid/serve.h"
 #include "sources/netcdf/box_around.h"
@@ -151,10 +150,19 @@ class NetcdfSource final : public BrickSource {
  private:
   template <class Answer>
   Status answered(double time_s, Answer&& answer) const noexcept {
-    const auto at = std::ranges::find(info_.times_s, time_s);
-    if (at == info_.times_s.end()) return refused(Status::kNoSuchTime);
-    return guarded(
-        [&]() -> Status { return answer(*moment(std::size_t(at - info_.times_s.begin()))); });
+    try {
+      const auto at = std::ranges::find(info_.times_s, time_s);
+      if (at == info_.times_s.end()) {
+        set_last_error(to_string(Status::kNoSuchTime));
+        return Status::kNoSuchTime;
+      }
+      return answer(*moment(std::size_t(at - info_.times_s.begin())));
+    } catch (const std::exception& e) {
+      set_last_error(e.what());
+    } catch (...) {
+      set_last_error("an exception of unknown type");
+    }
+    return Status::kReadFailed;
   }
 
   std::shared_ptr<const Moment> moment(std::size_t time) const {

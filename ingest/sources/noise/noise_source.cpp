@@ -1,15 +1,33 @@
 #include "sources/noise/noise_source.h"
 
 #include <algorithm>
+#include <exception>
 
 #include "api/module_support.h"
 #include "bricks/quantise.h"
-#include "bricks/source_guard.h"
 #include "sources/noise/field.h"
 #include "sources/noise/options.h"
 
 namespace nepho::noise {
 namespace {
+
+Status refused(Status status) {
+  set_last_error(to_string(status));
+  return status;
+}
+
+template <class Body>
+Status guarded(Body&& body) noexcept {
+  try {
+    body();
+    return Status::kOk;
+  } catch (const std::exception& e) {
+    set_last_error(e.what());
+  } catch (...) {
+    set_last_error("an exception of unknown type");
+  }
+  return Status::kReadFailed;
+}
 
 class NoiseSource final : public BrickSource {
  public:

@@ -5,7 +5,6 @@
 
 #include "bricks/box_chart.h"
 #include "bricks/quantise.h"
-#include "bricks/source_guard.h"
 #include "core/error.h"
 #include "loaded_frame.h"
 
@@ -20,6 +19,11 @@ std::string text(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.6g", value);
   return buffer;
+}
+
+Status refused(Status status) {
+  set_last_error(to_string(status));
+  return status;
 }
 
 // Mean over index columns of the optical depth along up, for a density scale of 1. The columns are
@@ -90,12 +94,18 @@ class VdbSource final : public BrickSource {
  private:
   template <class Answer>
   Status answered(NodeKey key, double time_s, Answer&& answer) const noexcept {
-    if (const Status status = check_request(info_, key, time_s); status != Status::kOk)
-      return refused(status);
-    return guarded([&] {
+    try {
+      if (const Status status = check_request(info_, key, time_s); status != Status::kOk)
+        return refused(status);
       const auto at = std::ranges::find(info_.times_s, time_s) - info_.times_s.begin();
       answer(*cache_.get(shown_[std::size_t(at)].file));
-    });
+      return Status::kOk;
+    } catch (const std::exception& e) {
+      set_last_error(e.what());
+    } catch (...) {
+      set_last_error("unknown failure");
+    }
+    return Status::kReadFailed;
   }
 
   void describe();
