@@ -112,7 +112,6 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
       ->group(group);
 }
 
-<<<<<<< HEAD
 void add_reference_options(CLI::App& command, RenderOptions& o) {
   const char* group = "Reference";
   command
@@ -131,7 +130,8 @@ void add_reference_options(CLI::App& command, RenderOptions& o) {
       ->group(group);
   command.add_option("--host-mib", o.host_mib, "reference: memory for the finest bricks (4096)")
       ->group(group);
-=======
+}
+
 void add_compare_options(CLI::App& command, CompareOptions& o) {
   command.add_option("--diff", o.diff, "picture of the differences; .exr, .hdr, .pfm: the numbers");
   command.add_option("--diff-of", o.diff_of,
@@ -142,7 +142,6 @@ void add_compare_options(CLI::App& command, CompareOptions& o) {
   command.add_option("--tone-map", o.tone_map, "aces or none; otherwise as B's scene says");
   command.add_option("--pixels-per-degree", o.pixels_per_degree, "of the eye, for FLIP (67)");
   command.add_flag("--json", o.json, "for programs");
->>>>>>> main
 }
 
 // A value given twice is a bad value; CLI11 calls it the same as a missing one.
