@@ -5,98 +5,12 @@
 #include <numbers>
 #include <optional>
 
-#include "bricks/box_chart.h"
-#include "bricks/shell_chart.h"
 #include "physics/physics_cpp.h"
+#include "reference/chart_rays.h"
 
 namespace nepho {
 namespace {
 
-using Cell = ChartRay::Cell;
-
-// A level ray in a periodic box would never leave.
-constexpr double kMaxPeriods = 4096, kLevelPeriods = 8, kLevel = 1e-6;
-
-std::int64_t floor_clamped(double x, std::int64_t count) {
-  return std::int64_t(std::clamp(std::floor(x), 0.0, double(count - 1)));
-}
-
-class BoxRay final : public ChartRay {
- public:
-  BoxRay(const BoxChart& chart, const Index3& cells, const Ray& ray)
-      : chart_(chart),
-        cells_(cells),
-        count_(double(cells[0]), double(cells[1]), double(cells[2])),
-        origin_(count_ * (chart.inverse_edges() * (ray.origin_m - chart.origin_m()))),
-        slope_(count_ * (chart.inverse_edges() * ray.direction)) {}
-
-  Start start(double t_max_m) const override {
-    Start s{0, t_max_m, 0, {}};
-    for (int a = 0; a < 3; ++a) {
-      if (periodic(a)) {
-        if (slope_[a] == 0) continue;
-        const double period_m = count_[a] / std::abs(slope_[a]);
-        s.end_m = std::min(s.end_m, kMaxPeriods * period_m);
-        if (std::abs(slope_[2]) < kLevel * std::abs(slope_[a]))
-          s.level_end_m = std::min(s.level_end_m, kLevelPeriods * period_m);
-      } else if (slope_[a] == 0) {
-        if (origin_[a] < 0 || origin_[a] > count_[a]) s.end_m = -1;
-      } else {
-        const double t0 = -origin_[a] / slope_[a], t1 = (count_[a] - origin_[a]) / slope_[a];
-        s.t_m = std::max(s.t_m, std::min(t0, t1));
-        s.end_m = std::min(s.end_m, std::max(t0, t1));
-      }
-    }
-    const glm::dvec3 at = cells_at(0, s.t_m);
-    for (int a = 0; a < 3; ++a)
-      s.cell[std::size_t(a)] = periodic(a) ? std::int64_t(std::floor(at[a]))
-                                           : floor_clamped(at[a], cells_[std::size_t(a)]);
-    return s;
-  }
-  glm::dvec3 cells_at(int, double t_m) const override { return origin_ + t_m * slope_; }
-  Exit exit(int, const Block& block, double t_m) const override {
-    Exit exit{kNoDistance_m, 0, 0};
-    for (int a = 0; a < 3; ++a) {
-      if (slope_[a] == 0) continue;
-      const int side = slope_[a] > 0 ? 1 : -1;
-      const std::int64_t wall = (side > 0 ? block.high : block.low)[std::size_t(a)];
-      const double t = std::max(t_m, (double(wall) - origin_[a]) / slope_[a]);
-      if (t < exit.t_m) exit = {t, a, side};
-    }
-    return exit;
-  }
-  bool cross_end(const Exit& exit, double&, int&, Cell&) const override {
-    return periodic(exit.axis);
-  }
-  Index3 wrapped(const Cell& cell) const override {
-    Index3 result;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::int64_t n = cells_[a];
-#if defined(NEPHO_MUTANT_NO_WRAP)
-      result[a] = std::uint32_t(std::clamp<std::int64_t>(cell[a], 0, n - 1));
-#else
-      result[a] = std::uint32_t((cell[a] % n + n) % n);
-#endif
-    }
-    return result;
-  }
-  int sub_steps(double, double) const override {
-    return 1;
-  }
-
- private:
-  bool periodic(int axis) const {
-    return axis == 0 ? chart_.periodic().x : axis == 1 && chart_.periodic().y;
-  }
-  const BoxChart& chart_;
-  Index3 cells_;
-  glm::dvec3 count_, origin_, slope_;
-};
-
-struct FaceAxes {
-  glm::dvec3 normal, u, v;
-};
-// On the cube, the face's middle is its normal, and the middles of its sides are normal + u or v.
 FaceAxes face_axes(const ShellChart& chart, int root) {
   const auto on_cube = [&](double x, double y) {
     const glm::dvec3 p = chart.to_scaled(chart.ecef_m({root, {x, y, 0}}));
@@ -104,6 +18,16 @@ FaceAxes face_axes(const ShellChart& chart, int root) {
   };
   const glm::dvec3 normal = on_cube(0.5, 0.5);
   return {normal, on_cube(1, 0.5) - normal, on_cube(0.5, 1) - normal};
+}
+
+const std::array<FaceAxes, 6>& cube_axes() {
+  static const std::array<FaceAxes, 6> axes = [] {
+    const ShellChart chart(Ellipsoid::sphere(1), 0, 1);
+    std::array<FaceAxes, 6> all;
+    for (int root = 0; root < 6; ++root) all[std::size_t(root)] = face_axes(chart, root);
+    return all;
+  }();
+  return axes;
 }
 
 // A line and a sphere about the origin: both distances, ascending; none where it is missed.
@@ -122,126 +46,122 @@ std::optional<Chord> sphere_chord(glm::dvec3 origin, glm::dvec3 direction, doubl
   return Chord{std::min(q / a, c / q), std::max(q / a, c / q)};
 }
 
-class ShellRay final : public ChartRay {
- public:
-  ShellRay(const ShellChart& chart, const Index3& cells, const Ray& ray)
-      : chart_(chart),
-        cells_(cells),
-        count_(double(cells[0]), double(cells[1]), double(cells[2])),
-        direction_(chart.to_scaled(ray.direction)),
-        origin_(chart.to_scaled(ray.origin_m)),
-        closest_m_(-glm::dot(origin_, direction_) / glm::dot(direction_, direction_)) {
-    for (int root = 0; root < 6; ++root) axes_[std::size_t(root)] = face_axes(chart, root);
-  }
+}  // namespace
 
-  Start start(double t_max_m) const override {
-    Start s{0, -1, 0, {}};
-    const auto top = sphere_chord(origin_, direction_, radius_m(count_.z));
-    if (!top) return s;
-    s.t_m = std::max(0.0, top->first);
-    s.end_m = std::min(t_max_m, top->second);
-    if (glm::length(origin_) < radius_m(0))
-      if (const auto bottom = sphere_chord(origin_, direction_, radius_m(0)))
-        s.t_m = std::max(s.t_m, bottom->second);
-    if (s.end_m > s.t_m) enter(s.t_m, s.root, s.cell);
-    return s;
+Index3 BoxRay::wrapped(const Cell& cell) const {
+  Index3 result;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t n = cells_[a];
+#if defined(NEPHO_MUTANT_NO_WRAP)
+    result[a] = std::uint32_t(std::clamp<std::int64_t>(cell[a], 0, n - 1));
+#else
+    result[a] = std::uint32_t((cell[a] % n + n) % n);
+#endif
   }
-  glm::dvec3 cells_at(int root, double t_m) const override {
-    const FaceAxes& face = axes_[std::size_t(root)];
-    const glm::dvec3 p = origin_ + t_m * direction_;
-    const double across = glm::dot(face.normal, p);
-    const auto coordinate = [&](const glm::dvec3& axis) {
-      return 0.5 + std::atan(glm::dot(axis, p) / across) * (2 / std::numbers::pi);
-    };
-    const double altitude_m = glm::length(p) - chart_.body().equatorial_m;
-    return count_ * glm::dvec3{coordinate(face.u), coordinate(face.v),
-                               (altitude_m - chart_.bottom_m()) / chart_.thickness_m()};
-  }
-  // Each wall is left in one sense only, so that no root has to be chosen: the ray's distance from
-  // a plane is linear in t; a sphere below can be met before the closest approach to the centre,
-  // and one above after it.
-  Exit exit(int root, const Block& block, double t_m) const override {
-    Exit exit{kNoDistance_m, 0, 0};
-    const FaceAxes& face = axes_[std::size_t(root)];
-    for (int a = 0; a < 2; ++a) {
-      const glm::dvec3& axis = a == 0 ? face.u : face.v;
-      for (const int side : {-1, 1}) {
-        const std::int64_t wall = (side > 0 ? block.high : block.low)[std::size_t(a)];
-        const glm::dvec3 plane = axis - equiangular(2 * double(wall) / count_[a] - 1) * face.normal;
-        const double slope = glm::dot(plane, direction_);
-        if (side * slope <= 0) continue;
-        const double t = std::max(t_m, -glm::dot(plane, origin_) / slope);
-        if (t < exit.t_m) exit = {t, a, side};
-      }
+  return result;
+}
+
+ShellRay::ShellRay(const ShellChart& chart, const Index3& cells, const Ray& ray)
+    : chart_(chart),
+      cells_(cells),
+      count_(double(cells[0]), double(cells[1]), double(cells[2])),
+      direction_(chart.to_scaled(ray.direction)),
+      origin_(chart.to_scaled(ray.origin_m)),
+      closest_m_(-glm::dot(origin_, direction_) / glm::dot(direction_, direction_)),
+      axes_(cube_axes()) {}
+
+ChartRay::Start ShellRay::start(double t_max_m) const {
+  Start s{0, -1, 0, {}};
+  const auto top = sphere_chord(origin_, direction_, radius_m(count_.z));
+  if (!top) return s;
+  s.t_m = std::max(0.0, top->first);
+  s.end_m = std::min(t_max_m, top->second);
+  if (glm::length(origin_) < radius_m(0))
+    if (const auto bottom = sphere_chord(origin_, direction_, radius_m(0)))
+      s.t_m = std::max(s.t_m, bottom->second);
+  if (s.end_m > s.t_m) enter(s.t_m, s.root, s.cell);
+  return s;
+}
+
+glm::dvec3 ShellRay::cells_at(int root, double t_m) const {
+  const FaceAxes& face = axes_[std::size_t(root)];
+  const glm::dvec3 p = origin_ + t_m * direction_;
+  const double across = glm::dot(face.normal, p);
+  const auto coordinate = [&](const glm::dvec3& axis) {
+    return 0.5 + std::atan(glm::dot(axis, p) / across) * (2 / std::numbers::pi);
+  };
+  const double altitude_m = glm::length(p) - chart_.body().equatorial_m;
+  return count_ * glm::dvec3{coordinate(face.u), coordinate(face.v),
+                             (altitude_m - chart_.bottom_m()) / chart_.thickness_m()};
+}
+
+ChartRay::Exit ShellRay::exit(int root, const Block& block, double t_m) const {
+  Exit exit{kNoDistance_m, 0, 0};
+  const FaceAxes& face = axes_[std::size_t(root)];
+  for (int a = 0; a < 2; ++a) {
+    const glm::dvec3& axis = a == 0 ? face.u : face.v;
+    for (const int side : {-1, 1}) {
+      const std::int64_t wall = (side > 0 ? block.high : block.low)[std::size_t(a)];
+      const glm::dvec3 plane = axis - equiangular(2 * double(wall) / count_[a] - 1) * face.normal;
+      const double slope = glm::dot(plane, direction_);
+      if (side * slope <= 0) continue;
+      const double t = std::max(t_m, -glm::dot(plane, origin_) / slope);
+      if (t < exit.t_m) exit = {t, a, side};
     }
-    if (t_m < closest_m_)
-      if (const auto below = sphere_chord(origin_, direction_, radius_m(double(block.low[2])))) {
-        const double t = std::max(t_m, below->first);
-        if (t < exit.t_m) exit = {t, 2, -1};
-      }
-    const auto above = sphere_chord(origin_, direction_, radius_m(double(block.high[2])));
-    const double t = std::max(t_m, above ? above->second : closest_m_);
-    if (t < exit.t_m) exit = {t, 2, 1};
-    return exit;
   }
-  bool cross_end(const Exit& exit, double& t_m, int& root, Cell& cell) const override {
-    if (exit.axis == 2) {
-      if (exit.side > 0) return false;
-      const auto bottom = sphere_chord(origin_, direction_, radius_m(0));
-      if (!bottom) return false;
-      t_m = std::max(t_m, bottom->second);
-      enter(t_m, root, cell);
-      return true;
+  if (t_m < closest_m_)
+    if (const auto below = sphere_chord(origin_, direction_, radius_m(double(block.low[2])))) {
+      const double t = std::max(t_m, below->first);
+      if (t < exit.t_m) exit = {t, 2, -1};
     }
-    // The other name of the middle sample of the edge that was crossed.
-    Column edge{root, cells_[0] / 2, cells_[1] / 2};
-    (exit.axis == 0 ? edge.i : edge.j) = exit.side > 0 ? cells_[0] : 0;
-    Column other;
-    for (const Column& name : chart_.names(edge, cells_))
-      if (name.root != root) other = name;
-    root = other.root;
-    const glm::dvec3 at = cells_at(root, exit.t_m);
-    const auto index = [&](std::uint32_t name, int axis) -> std::int64_t {
-      const std::uint32_t n = cells_[std::size_t(axis)];
-      if (name == 0) return 0;
-      return name == n ? n - 1 : floor_clamped(at[axis], n);
-    };
-    cell[0] = index(other.i, 0);
-    cell[1] = index(other.j, 1);
+  const auto above = sphere_chord(origin_, direction_, radius_m(double(block.high[2])));
+  const double t = std::max(t_m, above ? above->second : closest_m_);
+  if (t < exit.t_m) exit = {t, 2, 1};
+  return exit;
+}
+
+bool ShellRay::cross_end(const Exit& exit, double& t_m, int& root, Cell& cell) const {
+  if (exit.axis == 2) {
+    if (exit.side > 0) return false;
+    const auto bottom = sphere_chord(origin_, direction_, radius_m(0));
+    if (!bottom) return false;
+    t_m = std::max(t_m, bottom->second);
+    enter(t_m, root, cell);
     return true;
   }
-  // Finds root and cell from the position alone.
-  void enter(double t_m, int& root, Cell& cell) const {
-    const glm::dvec3 p = origin_ + t_m * direction_;
-    const double ratio = chart_.body().polar_m / chart_.body().equatorial_m;
-    root = chart_.locate({p.x, p.y, p.z * ratio}).root;
-    const glm::dvec3 at = cells_at(root, t_m);
-    for (int a = 0; a < 3; ++a) cell[std::size_t(a)] = floor_clamped(at[a], cells_[std::size_t(a)]);
-  }
-  Index3 wrapped(const Cell& cell) const override {
-    return {std::uint32_t(cell[0]), std::uint32_t(cell[1]), std::uint32_t(cell[2])};
-  }
-  int sub_steps(double length_m, double cells_high) const override {
+  // The other name of the middle sample of the edge that was crossed.
+  Column edge{root, cells_[0] / 2, cells_[1] / 2};
+  (exit.axis == 0 ? edge.i : edge.j) = exit.side > 0 ? cells_[0] : 0;
+  Column other;
+  for (const Column& name : chart_.names(edge, cells_))
+    if (name.root != root) other = name;
+  root = other.root;
+  const glm::dvec3 at = cells_at(root, exit.t_m);
+  const auto index = [&](std::uint32_t name, int axis) -> std::int64_t {
+    const std::uint32_t n = cells_[std::size_t(axis)];
+    if (name == 0) return 0;
+    return name == n ? n - 1 : floor_clamped(at[axis], n);
+  };
+  cell[0] = index(other.i, 0);
+  cell[1] = index(other.j, 1);
+  return true;
+}
+
+void ShellRay::enter(double t_m, int& root, Cell& cell) const {
+  const glm::dvec3 p = origin_ + t_m * direction_;
+  const double ratio = chart_.body().polar_m / chart_.body().equatorial_m;
+  root = chart_.locate({p.x, p.y, p.z * ratio}).root;
+  const glm::dvec3 at = cells_at(root, t_m);
+  for (int a = 0; a < 3; ++a) cell[std::size_t(a)] = floor_clamped(at[a], cells_[std::size_t(a)]);
+}
+
+int ShellRay::sub_steps(double length_m, double cells_high) const {
 #if defined(NEPHO_MUTANT_ONE_SIMPSON_STEP)
-    return 1;
+  return 1;
 #endif
-    return f64::simpson_steps(length_m * glm::length(direction_), chart_.body().equatorial_m,
-                              cells_high * chart_.thickness_m() / count_.z);
-  }
-
- private:
-  double radius_m(double wall) const {
-    return chart_.body().equatorial_m +
-           (chart_.bottom_m() + wall / count_.z * chart_.thickness_m());
-  }
-  const ShellChart& chart_;
-  Index3 cells_;
-  glm::dvec3 count_, direction_, origin_;  // scaled space
-  double closest_m_;
-  std::array<FaceAxes, 6> axes_;
-};
-
-}  // namespace
+  return f64::simpson_steps(length_m * glm::length(direction_), chart_.body().equatorial_m,
+                            cells_high * chart_.thickness_m() / count_.z);
+}
 
 std::unique_ptr<ChartRay> chart_ray(const VolumeInfo& info, const Ray& ray) {
   const Index3& cells = info.lattice.cells(info.lattice.max_level());

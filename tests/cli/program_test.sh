@@ -26,7 +26,7 @@ version_and_help() {
   nephoscope render --help >r.txt
   for option in size look-from look-at fov sun budget-mib step tolerance fetch seed frame fps \
     density-scale up metres-per-unit grid light exposure explain explain-all at heading pitch view time \
-    no-planet force; do
+    no-planet force region engine spp noise levels host-mib exact-orders; do
     has r.txt "^ *(-o,)?--$option"
   done
   nephoscope compare --help >c.txt
@@ -190,6 +190,28 @@ ctrl_c_leaves_nothing() {
   kill -TERM $pid
   if wait $pid; then fail "ended well in spite of the signal"; fi
   [ "$(ls -A in)" = s.json ] || { ls -A in; fail "left something behind"; }
+}
+
+# Paths: repeated bit for bit on any number of threads, to a goal, and Ctrl-C keeps what is done.
+reference_is_drawn() {
+  sphere in/s.json
+  nephoscope render in/s.json --engine reference --spp 6 -o a.pfm >a.txt
+  has a.txt '^error \(measured\): noise [0-9.e+]+ % .*, 6 paths a pixel; finest bricks\)$'
+  taskset -c 0 nephoscope render in/s.json --engine reference --spp 6 -o b.pfm >/dev/null
+  cmp a.pfm b.pfm || fail "another number of threads, another picture"
+  nephoscope render a.pfm -o c.pfm >/dev/null && nephoscope compare a.pfm c.pfm >c.txt
+  has c.txt "same pixels, bit for bit"
+  nephoscope render in/s.json --engine reference --noise 60% --levels resident -o d.ppm >d.txt
+  awk '/noise/ { sub(/.*noise /, ""); exit !($1 > 0 && $1 <= 60) }' d.txt || { cat d.txt; fail "noise"; }
+  nephoscope render in/s.json --spp 4 -o e.ppm 2>e.txt && fail "--spp without paths"
+  has e.txt 'error: --spp: nothing to apply it to'
+  nephoscope render in/s.json --size 64x64 --engine reference --spp 1000000 -o f.pfm >f.txt &
+  pid=$!
+  sleep 2
+  kill -INT $pid
+  wait $pid || fail "Ctrl-C lost the picture"
+  has f.txt 'stopped early'
+  [ -s f.pfm ] || fail "no picture after Ctrl-C"
 }
 
 compare_measures() {

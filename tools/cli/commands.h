@@ -13,6 +13,7 @@ struct RenderOptions {
   std::optional<std::string> size, look_from, look_at, fov_deg, sun, up, metres_per_unit, grid;
   std::optional<std::string> budget_mib, step_voxels, tolerance, fetch, light, seed, probe_pixels;
   std::optional<std::string> frame, fps, density_scale, exposure_ev, tone_map, max_level;
+  std::optional<std::string> engine, spp, noise, levels, host_mib, exact_orders;
   std::optional<std::string> at, heading_deg, pitch_deg, view, time, region;
   bool explain = false, explain_all = false, dither = false, no_planet = false, force = false;
   bool explain_macros = false;  // hidden: what the tests of the shaders' text compile them with

@@ -26,6 +26,7 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope render wrfout_d01.nc --at 29.9,-90.1 --heading 180 --pitch 12 -o street.png
   nephoscope render gfs.nc --region 30,160,60,-150 -o pacific.png
   nephoscope render wrfout_d01.nc --sun 2005-08-28T23:00Z --no-planet -o evening.png
+  nephoscope render smoke.png --engine reference --noise 1% -o true.exr   the same, path traced
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
   nephoscope info wrfout_d01.nc --check                  and how well the bricks hold it
   nephoscope compare a.exr b.exr                         how far two pictures are apart
@@ -111,6 +112,26 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
       ->group(group);
 }
 
+void add_reference_options(CLI::App& command, RenderOptions& o) {
+  const char* group = "Reference";
+  command
+      .add_option("--engine", o.engine,
+                  "march (the GPU), or reference: a path tracer on the CPU, slow and true")
+      ->group(group);
+  command.add_option("--spp", o.spp, "reference: paths a pixel")->group(group);
+  command.add_option("--noise", o.noise, "reference: go on to this noise, such as 1% (5%)")
+      ->group(group);
+  command
+      .add_option("--levels", o.levels, "reference: finest bricks, or resident (as the march has)")
+      ->group(group);
+  command
+      .add_option("--exact-orders", o.exact_orders,
+                  "reference: scatterings that keep a Mie phase function (2); -1 = all, noisy")
+      ->group(group);
+  command.add_option("--host-mib", o.host_mib, "reference: memory for the finest bricks (4096)")
+      ->group(group);
+}
+
 void add_compare_options(CLI::App& command, CompareOptions& o) {
   command.add_option("--diff", o.diff, "picture of the differences; .exr, .hdr, .pfm: the numbers");
   command.add_option("--diff-of", o.diff_of,
@@ -145,6 +166,7 @@ int run(int argc, char** argv) {
   draw->add_flag("--explain", render.explain, "what was loaded, allocated, run, and left out");
   draw->add_flag("--explain-all", render.explain_all, "the same, with every library by name");
   add_quality_options(*draw, render);
+  add_reference_options(*draw, render);
   add_camera_options(*draw, render);
   add_data_options(*draw, render.grid, render.up, render.metres_per_unit, render.density_scale,
                    render.frame);

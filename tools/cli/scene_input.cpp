@@ -204,6 +204,31 @@ void apply_quality(Scene& scene, const RenderOptions& o) {
         integer_value("--probe-pixels", *o.probe_pixels, "render", "probe_pixels");
 }
 
+void apply_paths(Scene& scene, const RenderOptions& o) {
+  PathGoals& paths = scene.render.paths;
+  if (o.engine)
+    scene.render.engine = choice_value("--engine", *o.engine, "render", "engine") == "march"
+                              ? Engine::kMarch
+                              : Engine::kReference;
+  for (const auto& [option, value] :
+       {std::pair{"--spp", &o.spp}, std::pair{"--noise", &o.noise},
+        std::pair{"--levels", &o.levels}, std::pair{"--host-mib", &o.host_mib},
+        std::pair{"--exact-orders", &o.exact_orders}})
+    if (*value && scene.render.engine == Engine::kMarch)
+      throw Error({"nothing to apply it to", option, "--engine reference", "the march", ""});
+  // One goal on the command line replaces both of a scene.
+  if (o.spp || o.noise) paths.samples = 0, paths.noise = 0;
+  if (o.spp) paths.samples = integer_value("--spp", *o.spp, "paths", "spp");
+  if (o.noise) paths.noise = share_value("--noise", *o.noise, "paths", "noise");
+  if (o.levels)
+    paths.levels = choice_value("--levels", *o.levels, "paths", "levels") == "finest"
+                       ? PathLevels::kFinest
+                       : PathLevels::kResident;
+  if (o.exact_orders)
+    paths.exact_orders = integer_value("--exact-orders", *o.exact_orders, "paths", "exact_orders");
+  if (o.host_mib) paths.host_mib = number_value("--host-mib", *o.host_mib, "paths", "host_mib");
+}
+
 }  // namespace
 
 InputKind input_kind(const std::string& input) {
@@ -308,6 +333,7 @@ Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
   set_force(scene, o.force);
   set_region(scene, o.region);
   apply_quality(scene, o);
+  apply_paths(scene, o);
   apply_planet(scene, o);
   apply_camera(scene, o);
   apply_light(scene, o);

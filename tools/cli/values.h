@@ -14,6 +14,9 @@ double number_value(const std::string& option, const std::string& text);
 // Within the range that the scene's grammar gives the field: "render", "budget_mib".
 double number_value(const std::string& option, const std::string& text, const char* object,
                     const char* field);
+// The same, where "1%" is 0.01.
+double share_value(const std::string& option, const std::string& text, const char* object,
+                   const char* field);
 int integer_value(const std::string& option, const std::string& text, const char* object,
                   const char* field);
 // One of the grammar's choices.

@@ -1,0 +1,216 @@
+#include "reference/path/path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "optics/phase_table.h"
+#include "tree/source_verbs.h"
+
+namespace nepho {
+namespace {
+
+double square(double x) {
+  return x * x;
+}
+
+// Of a technique of this density, where another could have led there as well.
+double power_weight(double own, double other) {
+#if defined(NEPHO_MUTANT_NO_MIS)
+  (void)own, (void)other;
+  return 1;
+#endif
+  return own > 0 ? 1 / (1 + square(other / own)) : 0;
+}
+
+// Henyey-Greenstein of the same asymmetry, that of 550 nm.
+PhaseSampler smooth(const Phase& phase) {
+  return PhaseSampler(
+      {.kind = PhaseKind::kHenyeyGreenstein, .asymmetry = phase_bulk(phase).asymmetry[1]});
+}
+
+double most(const glm::dvec3& c) {
+  return std::max({c.r, c.g, c.b});
+}
+
+}  // namespace
+
+// A path under way. `throughput` times what comes in is its sample, for each wavelength; divided by
+// the mean of the three wavelengths' densities (relative to the hero's) rather than the hero's own.
+struct PathTracer::Path {
+  Ray ray;
+  int hero;
+  Random& random;
+  glm::dvec3 throughput{1.0};
+  glm::dvec3 densities{1.0};  // of the phase functions so far, over the hero's
+  double last_density = 0;    // of the last direction, mean of the wavelengths; 0: from the eye
+  bool alive = true;
+  PathSample result = {};
+
+  void add(const glm::dvec3& radiance) { result.radiance_W_per_m2_sr_nm += radiance; }
+  // What a wavelength's light counts on this path.
+  glm::dvec3 weights() const {
+    return throughput * densities / ((densities.r + densities.g + densities.b) / 3);
+  }
+  // Roulette by what is left of the path, never by its length.
+  void thin_out() {
+    const double survive = std::min(1.0, most(throughput));
+    if (random.uniform() >= survive) alive = false;
+    throughput /= survive;
+  }
+};
+
+PathTracer::PathTracer(const Forest& forest, const RenderRequest& request, PathSettings settings)
+    : medium_(forest),
+      around_(request, settings.sun_radius_rad),
+      exact_orders_(settings.exact_orders) {
+  if (request.planet && request.planet->air) {
+    air_.emplace(*request.planet->air, request.planet->body);
+    aerosol_ = PhaseSampler::cornette_shanks(air_->aerosol_asymmetry());
+    grey_ = false;
+  }
+  for (const RenderVolume& volume : request.volumes) {
+    phases_.emplace_back(volume.phase);
+    ice_phases_.emplace_back(has_ice(volume.source->info()) ? volume.ice_phase : volume.phase);
+    smooth_phases_.emplace_back(smooth(volume.phase));
+    smooth_ice_phases_.emplace_back(smooth(volume.ice_phase));
+    co_albedos_.push_back(volume.co_albedo);
+    grey_ = grey_ && !air_ && phases_.back().grey() && ice_phases_.back().grey();
+  }
+}
+
+const PhaseSampler& PathTracer::phase(const PathMedium::Collision& collision) const {
+  return (collision.ice ? ice_phases_ : phases_)[std::size_t(collision.volume)];
+}
+
+const PhaseSampler& PathTracer::smooth_phase(const PathMedium::Collision& collision) const {
+  return (collision.ice ? smooth_ice_phases_ : smooth_phases_)[std::size_t(collision.volume)];
+}
+
+glm::dvec3 PathTracer::scattered(const PathMedium::Collision& collision,
+                                 const glm::dvec3& direction, int wavelength,
+                                 Random& random) const {
+  return turned(direction, phase(collision).sample(wavelength, random), random);
+}
+
+PathSample PathTracer::sample(const Ray& ray, Random& random) const {
+  Path path{.ray = ray, .hero = grey_ ? 1 : int(3 * random.uniform()), .random = random};
+  if (air_) {  // its free paths depend on the wavelength: no mixture
+    path.densities = glm::dvec3{0.0};
+    path.densities[path.hero] = 1;
+  }
+  while (path.alive) {
+    const double ground_m = around_.ground_m(path.ray);
+    const PhaseSampler* phase = next_scattering(path, ground_m);
+    if (phase) {
+      light_at_collision(path, *phase);
+      scatter(path, *phase);
+    } else if (path.alive) {
+      const bool ground = ground_m < kNoDistance_m;
+      if (ground && around_.ground_scatters() && meet_ground(path, ground_m)) continue;
+      if (!(ground && around_.ground_scatters())) leave(path, ground);
+      break;
+    }
+  }
+  return path.result;
+}
+
+const PhaseSampler* PathTracer::next_scattering(Path& path, double ground_m) const {
+  Random& random = path.random;
+  const PathMedium::Collision hit = medium_.collide(path.ray, ground_m, random);
+  const double reach_m = std::min(ground_m, hit.t_m);
+  if (air_) {
+    const PathAir::Collision in_air = air_->collide(path.ray, reach_m, path.hero, random);
+    if (in_air.event == PathAir::Event::kAbsorbed) path.alive = false;
+    if (in_air.event != PathAir::Event::kNone) {
+      path.ray.origin_m += in_air.t_m * path.ray.direction;
+      if (!path.alive) return nullptr;
+      ++path.result.scatterings;
+      return in_air.event == PathAir::Event::kRayleigh ? &molecules_ : &aerosol_;
+    }
+  }
+  if (hit.volume < 0) return nullptr;
+  path.ray.origin_m += hit.t_m * path.ray.direction;
+  ++path.result.scatterings;
+  const glm::dvec3& lost = co_albedos_[std::size_t(hit.volume)];
+  // By the co-albedo: 1 - 4e-7 has few digits left, and 4e-7 all of them.
+  const double absorbed = std::min({lost.r, lost.g, lost.b});
+  if (absorbed > 0) {
+    if (random.uniform() < absorbed) {
+      path.alive = false;
+      return nullptr;
+    }
+    path.throughput *= (1.0 - lost) / (1 - absorbed);
+  }
+  const bool exact = exact_orders_ < 0 || path.result.scatterings <= exact_orders_;
+  return exact ? &phase(hit) : &smooth_phase(hit);
+}
+
+double PathTracer::passed(const Path& path, const Ray& ray) const {
+  const double clouds = medium_.transmittance(ray, kNoDistance_m, path.random);
+  if (!air_ || !(clouds > 0)) return clouds;
+  return clouds * air_->transmittance(ray, kNoDistance_m, path.hero, path.random);
+}
+
+// The sun, by a direction of its disc.
+void PathTracer::light_at_collision(Path& path, const PhaseSampler& phase) const {
+  const glm::dvec3 to_sun = around_.to_sun(path.random);
+  const Ray ray{path.ray.origin_m, to_sun};
+  if (around_.ground_m(ray) < kNoDistance_m) return;
+  const double down = one_minus_cos(path.ray.direction, to_sun);
+  const glm::dvec3 value{phase.value(0, down), phase.value(1, down), phase.value(2, down)};
+  const double density = (value.r + value.g + value.b) / 3;
+  const double own = around_.sun_density(to_sun);
+  const double part = around_.beam() ? 1 : power_weight(own, density);
+  const glm::dvec3 light = part * path.weights() * value * around_.sun_W_per_m2_nm();
+  if (!(most(light) > 0)) return;
+  path.add(light * passed(path, ray));
+}
+
+void PathTracer::scatter(Path& path, const PhaseSampler& phase) const {
+  const Turn turn = phase.sample(path.hero, path.random);
+  path.ray.direction = turned(path.ray.direction, turn, path.random);
+  const glm::dvec3 value{phase.value(0, turn.one_minus_cos), phase.value(1, turn.one_minus_cos),
+                         phase.value(2, turn.one_minus_cos)};
+  path.last_density = (value.r + value.g + value.b) / 3;
+  if (!phase.grey()) path.densities *= value / value[path.hero];
+  path.thin_out();
+}
+
+// Light on the ground, and the way on. False where the path ends.
+bool PathTracer::meet_ground(Path& path, double ground_m) const {
+  const glm::dvec3 point_m = path.ray.origin_m + ground_m * path.ray.direction;
+  const glm::dvec3 to_eye = -path.ray.direction;
+  const Surroundings::Spot spot = around_.spot(point_m);
+  const glm::dvec3 to_sun = around_.to_sun(path.random);
+  const Ray ray{spot.start_m, to_sun};
+  const double own = around_.sun_density(to_sun);
+  const double part = around_.beam() ? 1 : power_weight(own, around_.density(spot, to_eye, to_sun));
+  const glm::dvec3 light =
+      part * path.weights() * around_.reflect(spot, to_eye, to_sun) * around_.sun_W_per_m2_nm();
+  if (most(light) > 0 && !(around_.ground_m(ray) < kNoDistance_m))
+    path.add(light * passed(path, ray));
+
+  const Surroundings::Way way = around_.sample(spot, to_eye, path.random);
+  const glm::dvec3 reflected = around_.reflect(spot, to_eye, way.direction);
+  if (!(way.density > 0) || !(most(reflected) > 0)) return false;
+  path.throughput *= reflected / way.density;
+  path.ray = {spot.start_m, way.direction};
+  path.last_density = way.density;
+  path.thin_out();
+  return path.alive;
+}
+
+void PathTracer::leave(Path& path, bool ground) const {
+  const glm::dvec3& direction = path.ray.direction;
+  glm::dvec3 seen = around_.background_W_per_m2_sr_nm(direction, ground);
+  const bool from_eye = !(path.last_density > 0);
+  if (!ground && (!from_eye || around_.shows_sun())) {
+    const double own = around_.sun_density(direction);
+    if (own > 0)
+      seen += (from_eye ? 1 : power_weight(path.last_density, own)) *
+              around_.disc_W_per_m2_sr_nm(direction);
+  }
+  path.add(path.weights() * seen);
+}
+
+}  // namespace nepho

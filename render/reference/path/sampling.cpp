@@ -1,0 +1,111 @@
+#include "reference/path/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "optics/phase_table.h"
+#include "physics/physics_cpp.h"
+
+namespace nepho {
+
+Turn sample_hg(double g, double u) {
+  // From the inverse of its distribution, with q = 1 - u; both 1 - cos and 1 + cos are products.
+  const double q = 1 - u, d = (1 - g) * q + (1 + g) * u;
+#if defined(NEPHO_MUTANT_CLASSIC_HG)
+  const float gf = float(g), root = (1 - gf * gf) / (1 - gf + 2 * gf * float(u));
+  const float cosine = (1 + gf * gf - root * root) / (2 * gf);
+  return {double(1 - cosine), double(std::sqrt(std::max(0.0f, 1 - cosine * cosine)))};
+#endif
+  const double down = 2 * (1 - g) * (1 - g) * q * (1 + g * u) / (d * d);
+  const double sine =
+      2 * (1 - g) * (1 + g) / (d * d) * std::sqrt(u * q * (1 + g * u) * (1 - g * q));
+  return {down, sine};
+}
+
+Turn sample_draine(double g, double alpha, Random& random) {
+  while (true) {
+    const Turn turn = sample_hg(g, random.uniform());
+    const double mu = 1 - turn.one_minus_cos;
+    if (random.uniform() * (1 + alpha) < 1 + alpha * mu * mu) return turn;
+  }
+}
+
+double draine_phase(double one_minus_cos, double g, double alpha) {
+  const double mu = 1 - one_minus_cos;
+  return f64::hg_phase(one_minus_cos, g) * (1 + alpha * mu * mu) /
+         (1 + alpha * (1 + 2 * g * g) / 3);
+}
+
+Turn sample_rayleigh(Random& random) {
+  while (true) {
+    const double down = 2 * random.uniform(), mu = 1 - down;
+    if (2 * random.uniform() < 1 + mu * mu) return {down, std::sqrt(down * (2 - down))};
+  }
+}
+
+glm::dvec3 turned(const glm::dvec3& direction, const Turn& turn, Random& random) {
+  // Duff et al. 2017 (JCGT 6(1)): an orthonormal basis without a branch at the poles.
+  const double sign = std::copysign(1.0, direction.z), a = -1 / (sign + direction.z);
+  const double b = direction.x * direction.y * a;
+  const glm::dvec3 first{1 + sign * direction.x * direction.x * a, sign * b, -sign * direction.x};
+  const glm::dvec3 second{b, sign + direction.y * direction.y * a, -direction.y};
+  const double azimuth = 2 * std::numbers::pi * random.uniform();
+  return glm::normalize((1 - turn.one_minus_cos) * direction +
+                        turn.sine * (std::cos(azimuth) * first + std::sin(azimuth) * second));
+}
+
+PhaseSampler::PhaseSampler(const Phase& phase)
+    : kind_(phase.kind == PhaseKind::kMie ? Kind::kTable : Kind::kHenyeyGreenstein),
+      asymmetry_(phase.asymmetry) {
+  const std::vector<float> log_values = phase_table(phase);  // refuses what is out of range
+  if (kind_ != Kind::kTable) return;
+  for (int c = 0; c < 3; ++c) tables_[std::size_t(c)] = make_table(log_values, c);
+}
+
+PhaseSampler::Table PhaseSampler::make_table(const std::vector<float>& log_values, int wavelength) {
+  Table table;
+  const double norm = std::log(phase_table_moments(log_values, wavelength).integral);
+  for (int i = 0; i < kPhaseTexels; ++i) {
+    const double half_sine = std::sin(0.5 * phase_texel_angle_rad(i));
+    table.from_forward.push_back(2 * half_sine * half_sine);
+    table.log_values.push_back(double(log_values[std::size_t(3 * i + wavelength)]) - norm);
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < std::size_t(kPhaseTexels); ++i) {
+    const double most = std::max(table.log_values[i], table.log_values[i + 1]);
+    sum += std::exp(most) * (table.from_forward[i + 1] - table.from_forward[i]);
+    table.log_most.push_back(most);
+    table.envelope.push_back(sum);
+  }
+  return table;
+}
+
+double PhaseSampler::value(int wavelength, double one_minus_cos) const {
+  if (kind_ == Kind::kHenyeyGreenstein) return f64::hg_phase(one_minus_cos, asymmetry_);
+  if (kind_ == Kind::kRayleigh) return f64::rayleigh_phase(one_minus_cos);
+  if (kind_ == Kind::kCornetteShanks) return f64::cornette_shanks_phase(one_minus_cos, asymmetry_);
+  const Table& table = tables_[std::size_t(wavelength)];
+  const double u = f64::phase_table_coordinate(one_minus_cos) * (kPhaseTexels - 1);
+  const auto i = std::size_t(std::clamp(u, 0.0, double(kPhaseTexels - 2)));
+  const double f = u - double(i);
+  return std::exp(table.log_values[i] + f * (table.log_values[i + 1] - table.log_values[i]));
+}
+
+Turn PhaseSampler::sample(int wavelength, Random& random) const {
+  if (kind_ == Kind::kHenyeyGreenstein) return sample_hg(asymmetry_, random.uniform());
+  if (kind_ == Kind::kRayleigh) return sample_rayleigh(random);
+  if (kind_ == Kind::kCornetteShanks) return sample_draine(asymmetry_, 1, random);
+  const Table& table = tables_[std::size_t(wavelength)];
+  while (true) {
+    const double mass = random.uniform() * table.envelope.back();
+    const auto i =
+        std::size_t(std::ranges::upper_bound(table.envelope, mass) - table.envelope.begin());
+    const double low = table.from_forward[i], high = table.from_forward[i + 1];
+    const double down = low + random.uniform() * (high - low);
+    if (random.uniform() * std::exp(table.log_most[i]) < value(wavelength, down))
+      return {down, std::sqrt(std::max(0.0, down * (2 - down)))};
+  }
+}
+
+}  // namespace nepho
