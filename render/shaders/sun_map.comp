@@ -40,6 +40,16 @@ void note_depth(float tau, float begin_m, float end_m) {
 #undef NEPHO_DO_BAND
 }
 
+vec4 band_texel(int band, float start_m) {
+  float tau = noted_depth[band], taken = 1.0 - exp(-tau);
+  if (taken <= 0.0) return vec4(0.0);
+  float begin_m = tau < 0.1 ? noted_first_m[band] : noted_edge_m[band];
+  // Mean depth of what an even cloud takes, as a part of its length; for small depths a series.
+  float share = tau < 0.5 ? 0.5 - tau / 12.0 : 1.0 / tau - (1.0 - taken) / taken;
+  float length_m = max((noted_mean[band] / taken - begin_m) / share, 1.0);
+  return vec4(taken, taken * (start_m - begin_m), taken * length_m, 0.0);
+}
+
 void main() {
   load_frame();
   load_planet();
@@ -61,11 +71,7 @@ void main() {
     optical_depth_ahead(1e4);
   }
   float start = float(dot(axes[2], ray_start - center));
-#define NEPHO_DO_BAND(b) {                                                               \
-  float taken = 1.0 - exp(-noted_depth[b]);                                              \
-  float begin_m = noted_depth[b] < 0.1 ? noted_first_m[b] : noted_edge_m[b];             \
-  imageStore(map, ivec3(at, b), taken <= 0.0 ? vec4(0.0) :                               \
-      vec4(taken, taken * (start - begin_m), taken * start - noted_mean[b], 0.0)); }
+#define NEPHO_DO_BAND(b) imageStore(map, ivec3(at, b), band_texel(b, start));
   NEPHO_EACH_BAND
 #undef NEPHO_DO_BAND
 }

@@ -1,7 +1,7 @@
 // Clouds' shadows on the air: a map across the sun's direction, dense under the eye, with a layer for
 // each band of height. Each texel: W = 1 - transmittance of that band's clouds on that line, W times
-// the depth where they begin, W times the mean depth of what they take; depths along the line,
-// growing towards the sun. A band's clouds stand for one even cloud of that beginning and mean.
+// the depth where they begin (along the line, growing towards the sun), W times the length of the even
+// cloud that takes as much and at the same mean depth. A band's clouds stand for that one.
 layout(binding = 5) uniform sampler2DArray sun_map;
 vec3 map_start, map_along;  // of the ray, in the map's axes
 
@@ -17,11 +17,7 @@ void begin_sun_map() {
 // Optical depth between the sun and a place at `depth_m` of the line, in one band.
 float band_depth(vec4 texel, float depth_m) {
   if (texel.x <= 1e-4) return 0.0;
-  float begin = texel.y / texel.x, mean = texel.z / texel.x;
-  float tau = -log(max(1.0 - texel.x, 1e-6));
-  // Mean depth of what an even cloud takes, as a part of its own; for small depths a series.
-  float share = tau < 0.5 ? 0.5 - tau / 12.0 : 1.0 / tau - (1.0 - texel.x) / texel.x;
-  return tau * clamp((begin - depth_m) * share / max(begin - mean, 0.5), 0.0, 1.0);
+  return -log(max(1.0 - texel.x, 1e-6)) * clamp((texel.y - texel.x * depth_m) / texel.z, 0.0, 1.0);
 }
 
 // Part of the sun's light that clouds leave at t_m.
