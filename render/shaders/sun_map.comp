@@ -23,6 +23,10 @@ void note_band(int band, float tau, float begin_m, float length_m, float height_
   float u = band == 0 ? (rise_m < 0.0 ? 1.0 : 0.0) : clamp((low_m - height_m) / rise_m, 0.0, 1.0);
   float v = band == NEPHO_BANDS - 1 ? (rise_m < 0.0 ? 0.0 : 1.0)
                                     : clamp((low_m + planet.map_band_m - height_m) / rise_m, 0.0, 1.0);
+#ifdef NEPHO_MUTANT_ONE_BAND
+  u = 0.0;
+  v = band == 0 ? 1.0 : 0.0;
+#endif
   float part = abs(v - u), own = tau * part, at_m = begin_m + min(u, v) * length_m;
   if (own <= 0.0) return;
   noted_mean[band] += exp(-noted_depth[band]) * own * (exp_e0(own) * at_m + exp_w1(own) * part * length_m);
