@@ -165,7 +165,8 @@ class PlanetBuilder {
                        glm::length(scaled(corner(glm::dvec3(c & 1, c >> 1 & 1, c >> 2)))));
       }
     }
-    scene_.clouds = !clouds_.balls.empty();
+    scene_.clouds =
+        !clouds_.balls.empty() || (request_.leave_nothing_out && !forest_.volumes.empty());
     scene_.data.cloud_top_m = float(std::max(0.0, clouds_.top_radius_m - scene_.data.radius_m));
   }
 
@@ -214,6 +215,9 @@ class PlanetBuilder {
     if (clouds_.endless) extent_m = sight_m;
     extent_m = std::min(extent_m, sight_m);
     scene_.sun_map_change = -std::expm1(-clouds_.most_per_m * 2 * extent_m);
+#if defined(NEPHO_MUTANT_BOLD_PREDICTION)
+    scene_.sun_map_change *= 0.01;
+#endif
     scene_.sun_map = scene_.sun_map_change >= kLeastShadow || request_.leave_nothing_out;
     store(data.map_center_m, center_m);
     for (int c = 0; c < 3; ++c) {

@@ -256,6 +256,22 @@ TEST_F(PlanetRenderer, IceScattersAsIce) {
   EXPECT_EQ(as_ice.report.atlas_bytes, 2 * picture(plain, liquid).report.atlas_bytes);
 }
 
+// Seen past a small cloud, the sea below it is no brighter than in the open.
+TEST_F(PlanetRenderer, NoPalePatchUnderASmallCloud) {
+  const Slab slab(1500, 2500, 800, 5e-3);
+  RenderRequest request = planet_request({&slab.source});
+  const glm::dvec3 eye = (kRadius_m + 500) * kUp - 6000.0 * kNorth;
+  request.camera = {eye, kRadius_m * kUp, kUp, 2 * kPi / 180};
+  request.sun.to_sun = sun_at(75, 90);
+  const double under = green_at(render(request).image, 16, 9);
+  request.volumes.clear();
+  const double open = green_at(render(request).image, 16, 9);
+  std::printf("measured: the sea under a cloud has %.3f of the light of the open sea\n",
+              under / open);
+  EXPECT_LE(under, 1.03 * open);
+  EXPECT_GE(under, 0.3 * open);
+}
+
 TEST_F(PlanetRenderer, NothingOfAPlanetIsMadeForASceneWithoutOne) {
   const Slab slab(0, 1000, 500, 1e-3);
   const auto passes = [](const RenderReport& report, const std::string& name) {
