@@ -68,18 +68,9 @@ TEST_F(PlanetReference, ClearSky) {
 
 // The march's own steps, without the GPU: against the same equations in 20000 of them.
 TEST(PlanetMarch, AirInTheShadowOfADeckAgreesWithQuadrature) {
-  const Slab slab(8000, 9000, 20e3, 0.05);
-  RenderRequest request = planet_request({&slab.source});
-  request.settings.width = 16;
-  request.settings.height = 6;
-  request.sun.to_sun = sun_at(50, 120);
-  look(request, 2, 9, 6);
-  Quadrature truth(request);
-  const Quadrature unshaded(request);
-  truth.steps = 20000;
-  truth.lit = [&](const glm::dvec3& p) {
-    return std::exp(-0.05 * slab.shade_m(p, request.sun.to_sun));
-  };
+  const ShadedDeck deck(16, 6);
+  const RenderRequest& request = deck.request;
+  const Quadrature &truth = *deck.truth, &unshaded = *deck.unshaded;
   const FinestLevels levels(request.volumes, 16);
   const RayMarch march(levels, request);
   double worst = 0, shade = 1;
@@ -152,14 +143,9 @@ TEST_F(PlanetReference, ACloudInTheAirOverTheSea) {
   }
 }
 
-// Most of what is seen is air in the shadow of a deck, against the dark ground behind.
 TEST_F(PlanetReference, CloudsShadowTheAir) {
-  const Slab slab(8000, 9000, 20e3, 0.05);
-  RenderRequest request = planet_request({&slab.source});
-  request.settings.width = 32;
-  request.settings.height = 8;
-  request.sun.to_sun = sun_at(50, 120);
-  look(request, 2, 9, 6);
+  const ShadedDeck deck(32, 8);
+  const RenderRequest& request = deck.request;
   const HdrImage image = render(request).image, truth = exact_picture(request);
   const double error = picture_error(image, truth, Counts::kAll);
   report_accuracy(kSection, "air in the shadow of a deck", error, 0.02,
@@ -176,7 +162,7 @@ struct TwoDecks {
 void measure(TwoDecks& decks, std::initializer_list<const BrickSource*> others = {}) {
   const Slab &high = decks.high, &low = decks.low;
   RenderRequest request = planet_request({&high.source, &low.source});
-  for (const BrickSource* other : others) request.volumes.push_back({.source = other});
+  for (const BrickSource* other : others) request.volumes.push_back({.source = other, .phase = {}});
   request.settings.width = 16;
   request.settings.height = 4;
   request.sun.to_sun = sun_at(40, 120);

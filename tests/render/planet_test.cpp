@@ -93,18 +93,9 @@ TEST_F(PlanetRenderer, ACloudsShadowLiesWhereTheSunPutsIt) {
 
 // Beams and shadows: under a thick deck the air is dark, beyond its edge it is not.
 TEST_F(PlanetRenderer, CloudsShadowTheAir) {
-  const Slab slab(8000, 9000, 20e3, 0.05);
-  RenderRequest request = planet_request({&slab.source});
-  request.settings.width = 64;
-  request.settings.height = 16;
-  request.sun.to_sun = sun_at(50, 120);
-  look(request, 2, 9, 6);
-  Quadrature truth(request);
-  const Quadrature unshaded(request);
-  truth.steps = 20000;
-  truth.lit = [&](const glm::dvec3& p) {
-    return std::exp(-0.05 * slab.shade_m(p, request.sun.to_sun));
-  };
+  const ShadedDeck deck(64, 16);
+  const RenderRequest& request = deck.request;
+  const Quadrature &truth = *deck.truth, &unshaded = *deck.unshaded;
   const double worst = worst_against(request, truth);
   report_accuracy("air", "air in the shadow of a deck: worst pixel", worst, 0.02, "1");
   EXPECT_LE(worst, 0.02);

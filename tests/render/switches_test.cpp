@@ -200,7 +200,7 @@ std::vector<Switch> all_switches() {
       {"curved walls", "curved walls", "", planets, shells[0]},
       {"sky visibility", "sky visibility", "", balls, under_sky},
       {"absorption", "absorption", "", {balls[1], planets[1], shells[0]}, dark},
-      {"ice", "ice:", "", {balls[1], planets[1], shells[0]}, {}},
+      {"ice", "the second channel", "", {balls[1], planets[1], shells[0]}, {}},
   };
 }
 
