@@ -204,8 +204,8 @@ std::vector<Switch> all_switches() {
   };
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Switches, ::testing::ValuesIn(all_switches()), [](const auto& info) {
-  std::string name = info.param.name;
+INSTANTIATE_TEST_SUITE_P(All, Switches, ::testing::ValuesIn(all_switches()), [](const auto& each) {
+  std::string name = each.param.name;
   std::ranges::replace(name, ' ', '_');
   return name;
 });
