@@ -23,7 +23,11 @@ using std::numbers::pi;
 constexpr int kSuns = 64, kHeights = 32;
 // Texels of the tables between two suns: light falls off by half an e-fold from one to the next in
 // twilight, and shaders interpolate linearly.
+#if defined(NEPHO_MUTANT_COARSE_TWILIGHT)
+constexpr int kBetween = 1;
+#else
 constexpr int kBetween = 4;
+#endif
 constexpr int kDepthWidth = 256, kDepthHeight = 208;
 constexpr int kSteepNodes = 3, kSideNodes = 8, kAzimuths = 6, kPanelNodes = 3;
 constexpr double kSteep = std::numbers::sqrt2 / 2;  // 45 degrees

@@ -172,6 +172,7 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
 
 bool sky_lights(const RenderRequest& request) {
   if (request.planet) return request.planet->air.has_value();
+  if (request.leave_nothing_out) return true;
   const Sky& sky = request.sky;
   const glm::dvec3 black(0.0);
   return sky.zenith_W_per_m2_sr_nm != black || sky.horizon_W_per_m2_sr_nm != black ||
@@ -179,6 +180,7 @@ bool sky_lights(const RenderRequest& request) {
 }
 
 bool tells_ice(const RenderRequest& request) {
+  if (request.leave_nothing_out) return true;
   return std::ranges::any_of(
       request.volumes, [](const RenderVolume& volume) { return has_ice(volume.source->info()); });
 }
@@ -201,6 +203,8 @@ GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
   scene.frame.step_voxels = float(settings.step_voxels.value_or(2));
   scene.frame.tolerance = float(settings.tolerance);
   scene.sky = sky_lights(request);
+  scene.has_box = scene.absorbs = request.leave_nothing_out;
+  scene.has_shell = request.leave_nothing_out && request.planet;
   scene.has_ice = tells_ice(request);
   std::vector<Phase> rows;
   for (std::size_t v = 0; v < forest.volumes.size(); ++v) {

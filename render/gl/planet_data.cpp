@@ -17,6 +17,9 @@ constexpr double kLeastShadow = 1e-3;
 // Lower hills, and a smaller part of land in a place, are left out.
 constexpr double kLeastTerrain_m = 1, kLeastLand = 1e-3;
 constexpr double kLeastWarp_m = 300;
+// Bands of height of the sun map: no thinner, and no more.
+constexpr double kLeastBand_m = 2000;
+constexpr int kMostBands = 4;
 
 template <class Number, std::size_t N, class Vector>
 void store(Number (&to)[N], const Vector& from) {
@@ -32,6 +35,7 @@ bool endless(const Chart& chart) {
 struct Clouds {
   std::vector<glm::dvec4> balls;  // around each leaf with extinction: centre, radius
   double top_radius_m = 0;        // scaled
+  double bottom_radius_m = 1e30;  // scaled
   double most_per_m = 0;
   bool endless = false;
 };
@@ -155,9 +159,14 @@ class PlanetBuilder {
           clouds_.top_radius_m =
               std::max(clouds_.top_radius_m,
                        glm::length(scaled(corner(glm::dvec3(c & 1, c >> 1 & 1, c >> 2)))));
+        for (int c = 0; c < (shell ? 1 : 8); ++c)
+          clouds_.bottom_radius_m =
+              std::min(clouds_.bottom_radius_m,
+                       glm::length(scaled(corner(glm::dvec3(c & 1, c >> 1 & 1, c >> 2)))));
       }
     }
-    scene_.clouds = !clouds_.balls.empty();
+    scene_.clouds =
+        !clouds_.balls.empty() || (request_.leave_nothing_out && !forest_.volumes.empty());
     scene_.data.cloud_top_m = float(std::max(0.0, clouds_.top_radius_m - scene_.data.radius_m));
   }
 
@@ -206,6 +215,9 @@ class PlanetBuilder {
     if (clouds_.endless) extent_m = sight_m;
     extent_m = std::min(extent_m, sight_m);
     scene_.sun_map_change = -std::expm1(-clouds_.most_per_m * 2 * extent_m);
+#if defined(NEPHO_MUTANT_BOLD_PREDICTION)
+    scene_.sun_map_change *= 0.01;
+#endif
     scene_.sun_map = scene_.sun_map_change >= kLeastShadow || request_.leave_nothing_out;
     store(data.map_center_m, center_m);
     for (int c = 0; c < 3; ++c) {
@@ -217,8 +229,19 @@ class PlanetBuilder {
         std::clamp(0.1 * eye_height_m, kLeastWarp_m, std::max(extent_m / 3, kLeastWarp_m));
     data.map_warp_m = float(warp_m);
     data.map_range = float(std::asinh(extent_m / warp_m));
+    set_bands();
     const double side = std::sqrt(double(request_.settings.width) * request_.settings.height);
     scene_.map_size = std::clamp(16 * int(side / 16), 128, 768);
+  }
+
+  // A texel holds what is in one band as one cloud: decks far apart have bands of their own.
+  void set_bands() {
+    PlanetData& data = scene_.data;
+    data.cloud_bottom_m =
+        float(std::min(clouds_.bottom_radius_m - data.radius_m, double(data.cloud_top_m)));
+    const double thickness_m = double(data.cloud_top_m) - data.cloud_bottom_m;
+    scene_.map_bands = std::clamp(int(std::ceil(thickness_m / kLeastBand_m)), 1, kMostBands);
+    data.map_band_m = float(thickness_m / scene_.map_bands);
   }
 
   const RenderRequest& request_;

@@ -14,12 +14,13 @@ namespace nepho::gl {
 
 static_assert(offsetof(PlanetData, surface_axes) == 120 &&
               offsetof(PlanetData, rayleigh_per_m) == 224);
-static_assert(sizeof(PlanetData) == 376);
+static_assert(sizeof(PlanetData) == 384);
 
 struct PlanetScene {
   PlanetData data{};
   bool air = false, clouds = false, terrain = false, sun_map = false;
   int map_size = 0;           // texels on a side of the sun map
+  int map_bands = 1;          // its layers
   double sun_map_change = 0;  // most that leaving it out can change the air's light
   // Of a surface map, left out or not: its highest place, and the largest part of land in a place.
   bool surface_known = false;

@@ -33,6 +33,15 @@ Texture make_texture_2d(int width, int height, GLenum format, GLenum filter) {
   return texture;
 }
 
+Texture make_texture_array(int width, int height, int layers) {
+  GLuint id = 0;
+  glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
+  Texture texture(id);
+  glTextureStorage3D(id, 1, GL_RGBA32F, width, height, layers);
+  set_filter(id, GL_LINEAR);
+  return texture;
+}
+
 void dispatch_blocks(const Program& program, int width, int height) {
   glUseProgram(program.id());
   const GLint first = glGetUniformLocation(program.id(), "first_pixel");
@@ -62,7 +71,13 @@ std::string PlanetPasses::defines() const {
   std::string text = "#define NEPHO_GROUND 1\n";
   if (scene_.air) text += "#define NEPHO_AIR 1\n";
   if (scene_.terrain) text += "#define NEPHO_TERRAIN 1\n";
-  if (scene_.sun_map) text += "#define NEPHO_SUN_MAP 1\n";
+  if (scene_.sun_map) {
+    text += "#define NEPHO_SUN_MAP 1\n#define NEPHO_BANDS " + std::to_string(scene_.map_bands) +
+            "\n#define NEPHO_EACH_BAND ";
+    for (int band = 0; band < scene_.map_bands; ++band)
+      text += "NEPHO_DO_BAND(" + std::to_string(band) + ") ";
+    text += "\n";
+  }
   if (scene_.clouds) text += "#define NEPHO_CLOUDS 1\n";
   return text;
 }
@@ -84,13 +99,9 @@ void PlanetPasses::upload() {
                                                    &tables.sky_up,   &tables.sky_side,
                                                    &tables.sky_down, &tables.sky_low};
     const int width = layers[0]->width, height = layers[0]->height;
-    GLuint id = 0;
-    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
-    light_ = Texture(id);
-    glTextureStorage3D(id, 1, GL_RGBA32F, width, height, GLsizei(layers.size()));
-    set_filter(id, GL_LINEAR);
+    light_ = make_texture_array(width, height, int(layers.size()));
     for (std::size_t layer = 0; layer < layers.size(); ++layer)
-      glTextureSubImage3D(id, 0, 0, 0, GLint(layer), width, height, 1, GL_RGB, GL_FLOAT,
+      glTextureSubImage3D(light_.id(), 0, 0, 0, GLint(layer), width, height, 1, GL_RGB, GL_FLOAT,
                           layers[layer]->rgb.data());
     table_bytes_ = 16 * (std::uint64_t(tables.depth.width) * std::uint64_t(tables.depth.height) +
                          layers.size() * std::uint64_t(width) * std::uint64_t(height));
@@ -118,9 +129,9 @@ void PlanetPasses::upload() {
 
 void PlanetPasses::draw_sun_map(const std::string& switches) {
   const int size = scene_.map_size;
-  sun_map_ = make_texture_2d(size, size, GL_RGBA32F, GL_LINEAR);
-  map_bytes_ = 16 * std::uint64_t(size) * std::uint64_t(size);
-  glBindImageTexture(0, sun_map_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  sun_map_ = make_texture_array(size, size, scene_.map_bands);
+  map_bytes_ = 16 * std::uint64_t(size) * std::uint64_t(size) * std::uint64_t(scene_.map_bands);
+  glBindImageTexture(0, sun_map_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   dispatch_blocks(compile("sun_map", nepho_shader_sun_map, switches), size, size);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   glBindTextureUnit(kSunMapUnit, sun_map_.id());

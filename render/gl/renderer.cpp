@@ -272,6 +272,7 @@ void Renderer::report() {
   if (!scene_.has_box) report.left_out.push_back("flat walls: no volume is in a box");
   if (!sky_light())
     report.left_out.push_back("sky visibility: the sky is black; light tiles hold one channel");
+  if (!scene_.has_ice) report.left_out.push_back("the second channel: no volume tells ice apart");
   if (!scene_.absorbs) report.left_out.push_back("absorption: every co-albedo is 0");
   if (scene_.lit.empty()) report.left_out.push_back("light passes: nothing scatters");
   if (forest_.budget_bound)

@@ -222,7 +222,7 @@ float depth_of_segment(float t, float end, bool smooth_) {
       float part = simpson_optical_depth(k0, k_mid, k1, sub);
       tau += part;
 #ifdef NEPHO_NOTE_DEPTH
-      note_depth(part, t + 0.5 * sub);
+      note_depth(part, t, t + sub);
 #endif
       k0 = k1;
       t += sub;

@@ -29,6 +29,8 @@ struct PlanetData {
   float water_albedo[3];
   float slope_variance;  // of the water, both axes
   float cloud_top_m;     // no extinction above; heights as the chart's
+  float cloud_bottom_m;  // none below
+  float map_band_m;      // sun map: height of a layer's band, from the bottom
   float map_warp_m;      // sun map: |x| = warp sinh(range u), u in [0, 1]
   float map_range;
   float surface_top_m;    // highest of the surface map

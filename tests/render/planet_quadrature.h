@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "air/air_lookup.h"
 #include "physics/physics_cpp.h"
@@ -99,6 +100,30 @@ class Quadrature {
   const Air air_;
   AirTables tables_;
   AirLookup lookup_;
+};
+
+// Most of what is seen is air in the shadow of a deck, against the dark ground behind. The shadow
+// is known in closed form. Stays where it is made: its parts point at each other.
+struct ShadedDeck {
+  static constexpr double kExtinction_per_m = 0.05;
+  Slab slab{8000, 9000, 20e3, kExtinction_per_m};
+  RenderRequest request;
+  std::optional<Quadrature> truth, unshaded;
+
+  ShadedDeck(int width, int height) : request(planet_request({&slab.source})) {
+    request.settings.width = width;
+    request.settings.height = height;
+    request.sun.to_sun = sun_at(50, 120);
+    look(request, 2, 9, 6);
+    truth.emplace(request);
+    unshaded.emplace(request);
+    truth->steps = 20000;
+    truth->lit = [this](const glm::dvec3& p) {
+      return std::exp(-kExtinction_per_m * slab.shade_m(p, request.sun.to_sun));
+    };
+  }
+  ShadedDeck(const ShadedDeck&) = delete;
+  ShadedDeck& operator=(const ShadedDeck&) = delete;
 };
 
 }  // namespace nepho::test

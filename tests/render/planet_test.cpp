@@ -93,18 +93,9 @@ TEST_F(PlanetRenderer, ACloudsShadowLiesWhereTheSunPutsIt) {
 
 // Beams and shadows: under a thick deck the air is dark, beyond its edge it is not.
 TEST_F(PlanetRenderer, CloudsShadowTheAir) {
-  const Slab slab(8000, 9000, 20e3, 0.05);
-  RenderRequest request = planet_request({&slab.source});
-  request.settings.width = 64;
-  request.settings.height = 16;
-  request.sun.to_sun = sun_at(50, 120);
-  look(request, 2, 9, 6);
-  Quadrature truth(request);
-  const Quadrature unshaded(request);
-  truth.steps = 20000;
-  truth.lit = [&](const glm::dvec3& p) {
-    return std::exp(-0.05 * slab.shade_m(p, request.sun.to_sun));
-  };
+  const ShadedDeck deck(64, 16);
+  const RenderRequest& request = deck.request;
+  const Quadrature &truth = *deck.truth, &unshaded = *deck.unshaded;
   const double worst = worst_against(request, truth);
   report_accuracy("air", "air in the shadow of a deck: worst pixel", worst, 0.02, "1");
   EXPECT_LE(worst, 0.02);
@@ -254,6 +245,22 @@ TEST_F(PlanetRenderer, IceScattersAsIce) {
   EXPECT_LE(off_liquid / most, 1e-5);
   EXPECT_LE(off_half / most, 1e-4);
   EXPECT_EQ(as_ice.report.atlas_bytes, 2 * picture(plain, liquid).report.atlas_bytes);
+}
+
+// Seen past a small cloud, the sea below it is no brighter than in the open.
+TEST_F(PlanetRenderer, NoPalePatchUnderASmallCloud) {
+  const Slab slab(1500, 2500, 800, 5e-3);
+  RenderRequest request = planet_request({&slab.source});
+  const glm::dvec3 eye = (kRadius_m + 500) * kUp - 6000.0 * kNorth;
+  request.camera = {eye, kRadius_m * kUp, kUp, 2 * kPi / 180};
+  request.sun.to_sun = sun_at(75, 90);
+  const double under = green_at(render(request).image, 16, 9);
+  request.volumes.clear();
+  const double open = green_at(render(request).image, 16, 9);
+  std::printf("measured: the sea under a cloud has %.3f of the light of the open sea\n",
+              under / open);
+  EXPECT_LE(under, 1.03 * open);
+  EXPECT_GE(under, 0.3 * open);
 }
 
 TEST_F(PlanetRenderer, NothingOfAPlanetIsMadeForASceneWithoutOne) {

@@ -20,6 +20,7 @@ for shader in "$folder"/*.comp; do
   drop=NEPHO_LIT
   case $name in
     light_*) ;;
+    sun_map.comp) grep -q NEPHO_SUN_MAP "$scratch/switches" || continue ;;
     ground.comp | sun_map.comp) grep -q NEPHO_GROUND "$scratch/switches" || continue ;;
     *) drop=nothing ;;
   esac

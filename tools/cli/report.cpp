@@ -66,12 +66,6 @@ std::vector<std::string> without_loops(std::vector<std::string> switches) {
   return switches;
 }
 
-bool has_ice(const std::unique_ptr<BrickSource>& source) {
-  return std::ranges::any_of(source->info().channels, [](const ChannelInfo& channel) {
-    return channel.channel == Channel::kIceExtinction;
-  });
-}
-
 // What the modules of this process ask for themselves (DT_NEEDED), from the loader's own list.
 std::vector<std::string> needed_by_modules() {
   std::vector<std::string> names;
@@ -179,10 +173,7 @@ std::string explanation(const OpenedScene& opened, const RenderResult& result,
   for (const PassReport& pass : report.passes)
     out << format("  %-24s %8.3f s\n", pass.name.c_str(), pass.cpu_s);
   list(out, "shader switches:", without_loops(report.shader_switches));
-  std::vector<std::string> left_out = report.left_out;
-  if (std::ranges::none_of(opened.sources, has_ice))
-    left_out.push_back("the second channel: no volume tells ice apart");
-  list(out, "left out:", left_out);
+  list(out, "left out:", report.left_out);
   return out.str();
 }
 
