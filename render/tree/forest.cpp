@@ -21,6 +21,9 @@ namespace {
 constexpr std::size_t kBatch = 256;
 // Standard deviations that an octave of noise can reach: the closure's own end (docs/lattice.md 2).
 constexpr double kDeviations = 4;
+// Tolerances that noise counts in full from. A depth of 0.1 by default: with 1, blocks of unlike
+// levels showed in cirrus.
+constexpr double kStrong = 10;
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
 
 struct Counts {
@@ -147,10 +150,12 @@ class Refiner {
       return;
     const ViewMetric::NodeView view = metric_.view(info, key);
     const double error = depth_error(info, summary, view);
-    const double priority = view.voxel_pixels * -std::expm1(-error);
+    const double tolerance = refinement_.settings.tolerance;
+    const double strong = info.refine_by_variance ? kStrong * tolerance : 1;
+    const double priority = view.voxel_pixels * -std::expm1(-error / strong);
     // Faint voxels may be larger, where all that is known of them is what they are likely to hide.
     const double pixels = info.refine_by_variance ? priority : view.voxel_pixels;
-    if (pixels > refinement_.settings.pixels_per_voxel && error > refinement_.settings.tolerance)
+    if (pixels > refinement_.settings.pixels_per_voxel && error > tolerance)
       queue_.insert({priority, volume, key, index});
   }
 

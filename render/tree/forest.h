@@ -86,13 +86,13 @@ struct Refinement {
 // voxels, tolerance 1e-2: 5e-7 with 3214 bricks; at 16 times this threshold 1e-3 with 2708, at 256
 // times 2e-2 with 1304.) Priority = voxel pixels x (1 - exp(-error)).
 // Where a volume says refine_by_variance, the error is at most four unresolved standard deviations
-// x the way through the node, and it is the priority that has to be above pixels_per_voxel: equal
-// errors of the picture for equal numbers of bricks.
-// Off-screen nodes shadow what is seen: they stay, at a quarter of the resolution; at a sixteenth
-// where their shadow from the sun misses the picture too and they only dim the sky's light. The
-// sequence of splits does not depend on the budget, which only ends it: a larger budget never gives
-// a coarser node. Reads summaries and bricks in parallel (TBB), each brick once. Throws Error where
-// the budget does not hold the roots, or a source fails (its own text).
+// x the way through the node; priority = voxel pixels x (1 - exp(-error / (10 tolerance))), and it
+// is this that has to be above pixels_per_voxel: faint cloud gets larger voxels. Off-screen nodes
+// shadow what is seen: they stay, at a quarter of the resolution; at a sixteenth where their shadow
+// from the sun misses the picture too and they only dim the sky's light. The sequence of splits
+// does not depend on the budget, which only ends it: a larger budget never gives a coarser node.
+// Reads summaries and bricks in parallel (TBB), each brick once. Throws Error where the budget does
+// not hold the roots, or a source fails (its own text).
 Forest build_forest(std::span<const RenderVolume> volumes, const Refinement& refinement);
 
 // The leaf that holds a cell of the finest lattice.

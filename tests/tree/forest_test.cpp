@@ -274,16 +274,17 @@ class Likely final : public BrickSource {
 };
 
 TEST(Forest, NoiseIsRefinedByWhatIsLikely) {
-  const Refinement r = refinement(64);
+  Refinement r = refinement(64);
+  r.settings.pixels_per_voxel = 10;  // a root's voxel: 29
   const auto finest = [&](double deviation_per_m) {
     const Likely source(deviation_per_m);
     const RenderVolume volume = volume_of(source);
     return build_forest({&volume, 1}, r).volumes[0].finest_level_used;
   };
   EXPECT_EQ(finest(0), 0);
-  EXPECT_EQ(finest(1), 3);
-  // Four deviations through 1 km are a depth of 0.1: 29 pixels weigh 2.8. Half as long and as
-  // large: 0.7.
+  EXPECT_EQ(finest(1), 2);
+  // Four deviations through 1 km are a depth of 0.1: 29 pixels weigh 18. Half as long and as
+  // large: 6.
   EXPECT_EQ(finest(2.5e-5), 1);
   // Below the tolerance, 0.01.
   EXPECT_EQ(finest(2e-6), 0);
