@@ -15,7 +15,7 @@ double roll_off(double cell_m, double voxel_m) {
 }
 
 double kept(const Octave& octave, const Layer& layer, double width_m, double height_m) {
-  double weight = roll_off(octave.cell_m, width_m);
+  double weight = roll_off(octave.cell_m * std::min(1.0, octave.stretch), width_m);
   if (octave.domain == Domain::kVolume) weight *= roll_off(octave.cell_m, height_m);
   if (octave.domain == Domain::kStreak && layer.trail_m > 0) {
     // A streak slopes: its foot lies 2 trail / thickness along the wind per metre of height.
