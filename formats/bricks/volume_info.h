@@ -54,6 +54,9 @@ struct VolumeInfo {
   // Weather of a planet: a picture of it wants the planet's ground and air, unless the scene says
   // otherwise.
   bool on_planet = false;
+  // Error bounds hold for whatever may lie below a node, which is far above what does (noise: each
+  // octave left out at its largest). Trees are refined by the unresolved variance instead.
+  bool refine_by_variance = false;
   std::shared_ptr<const SurfaceMap> surface;  // null: the data have no ground
   std::uint64_t source_bytes = 0;             // memory that the source itself holds
   std::vector<std::string> assumptions;       // one sentence each: what was not in the data

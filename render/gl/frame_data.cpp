@@ -186,7 +186,7 @@ bool tells_ice(const RenderRequest& request) {
 }
 
 Refinement refinement_of(const RenderRequest& request) {
-  Refinement refinement{request.camera, request.settings, {}};
+  Refinement refinement{request.camera, request.settings, {}, request.sun.to_sun};
   const bool sky = sky_lights(request);
   refinement.cost.total = tells_ice(request) ? (sky ? bytes_with_sky_and_ice : bytes_with_ice)
                                              : (sky ? bytes_with_sky : bytes_without_sky);

@@ -19,6 +19,11 @@ namespace {
 // Candidates whose children are summarised together. Fixed, so that work, not results, depends on
 // the number of threads.
 constexpr std::size_t kBatch = 256;
+// Standard deviations that an octave of noise can reach: the closure's own end (docs/lattice.md 2).
+constexpr double kDeviations = 4;
+// Tolerances that noise counts in full from. A depth of 0.1 by default: with 1, blocks of unlike
+// levels showed in cirrus.
+constexpr double kStrong = 10;
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
 
 struct Counts {
@@ -67,7 +72,7 @@ class Refiner {
  public:
   Refiner(std::span<const RenderVolume> volumes, const Refinement& refinement)
       : refinement_(refinement),
-        metric_(refinement.camera, refinement.settings),
+        metric_(refinement.camera, refinement.settings, refinement.to_sun),
         budget_bytes_(refinement.settings.budget_mib * kBytesPerMib) {
     for (const RenderVolume& volume : volumes)
       forest_.volumes.push_back(
@@ -143,11 +148,27 @@ class Refiner {
     if (key.level() >= std::min(refinement_.settings.max_level, info.lattice.max_level()) ||
         summary.constant || nothing_below || !(summary.error_bound_per_m > 0))
       return;
-    const auto [voxel_pixels, length_m] = metric_.view(info, key);
-    const double depth_error = summary.error_bound_per_m * length_m;
-    if (voxel_pixels > refinement_.settings.pixels_per_voxel &&
-        depth_error > refinement_.settings.tolerance)
-      queue_.insert({voxel_pixels * -std::expm1(-depth_error), volume, key, index});
+    const ViewMetric::NodeView view = metric_.view(info, key);
+    const double error = depth_error(info, summary, view);
+    const double tolerance = refinement_.settings.tolerance;
+    const double strong = info.refine_by_variance ? kStrong * tolerance : 1;
+    const double priority = view.voxel_pixels * -std::expm1(-error / strong);
+    // Faint voxels may be larger, where all that is known of them is what they are likely to hide.
+    const double pixels = info.refine_by_variance ? priority : view.voxel_pixels;
+    if (pixels > refinement_.settings.pixels_per_voxel && error > tolerance)
+      queue_.insert({priority, volume, key, index});
+  }
+
+  // What a ray's optical depth in the node can be off by; for noise, what it is likely to be.
+  static double depth_error(const VolumeInfo& info, const NodeSummary& summary,
+                            const ViewMetric::NodeView& view) {
+    const double surely = summary.error_bound_per_m * view.length_m;
+    if (!info.refine_by_variance) return surely;
+#if defined(NEPHO_MUTANT_FOREST_VARIANCE)
+    return surely;
+#endif
+    const double deviation_per_m = std::sqrt(summary.unresolved_variance_per_m2);
+    return std::min(surely, kDeviations * deviation_per_m * view.path_m);
   }
 
   const std::vector<NodeSummary>& children_of(const Candidate& first) {

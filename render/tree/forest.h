@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -76,17 +77,22 @@ struct Refinement {
   Camera camera;
   RenderSettings settings;  // size, fov, pixels_per_voxel, max_level, budget_mib, tolerance
   TileCost cost;
+  std::optional<glm::dvec3> to_sun = {};  // unit, ECEF; absent: any node off-screen may shadow
 };
 
 // A node is split while its voxels (on the axes that the split halves) are larger on the screen
-// than settings.pixels_per_voxel, and its error bound times its length is above settings.tolerance:
-// a supremum, so that the error of a picture is far below it. (Smoke of 222^3 voxels, tolerance
-// 1e-2: 5e-7 with 3214 bricks; at 16 times this threshold 1e-3 with 2708, at 256 times 2e-2 with
-// 1304.) Priority = voxel pixels * (1 - exp(-error bound * length)). Off-screen nodes shadow what
-// is seen: they stay, at a quarter of the resolution. The sequence of splits does not depend on the
-// budget, which only ends it: a larger budget never gives a coarser node. Reads summaries and
-// bricks in parallel (TBB), each brick once. Throws Error where the budget does not hold the roots,
-// or a source fails (its own text).
+// than settings.pixels_per_voxel, and its error in optical depth is above settings.tolerance: error
+// bound x longest edge, a supremum, so that the error of a picture is far below it. (Smoke of 222^3
+// voxels, tolerance 1e-2: 5e-7 with 3214 bricks; at 16 times this threshold 1e-3 with 2708, at 256
+// times 2e-2 with 1304.) Priority = voxel pixels x (1 - exp(-error)).
+// Where a volume says refine_by_variance, the error is at most four unresolved standard deviations
+// x the way through the node; priority = voxel pixels x (1 - exp(-error / (10 tolerance))), and it
+// is this that has to be above pixels_per_voxel: faint cloud gets larger voxels. Off-screen nodes
+// shadow what is seen: they stay, at a quarter of the resolution; at a sixteenth where their shadow
+// from the sun misses the picture too and they only dim the sky's light. The sequence of splits
+// does not depend on the budget, which only ends it: a larger budget never gives a coarser node.
+// Reads summaries and bricks in parallel (TBB), each brick once. Throws Error where the budget does
+// not hold the roots, or a source fails (its own text).
 Forest build_forest(std::span<const RenderVolume> volumes, const Refinement& refinement);
 
 // The leaf that holds a cell of the finest lattice.

@@ -12,6 +12,8 @@ namespace nepho {
 namespace {
 
 constexpr double kOffScreen = 0.25;
+// Off-screen and its shadow too: it takes part of the sky's light away, from all directions alike.
+constexpr double kNoShadow = 1.0 / 16;
 // Arcs bulge between the grid points of a shell node: 22.5 deg of arc rises 2 % of its chord.
 constexpr double kBulge = 1.05;
 
@@ -77,6 +79,25 @@ bool behind_planet(const ShellChart& chart, const glm::dvec3& eye_m, const glm::
   return across + radius * std::sqrt(1 + tangent * tangent) < depth * tangent;
 }
 
+// How far a shadow that starts at `from_m` reaches: to the ground, or out of the clouds.
+double shadow_length_m(const Chart& any, const glm::dvec3& from_m, const glm::dvec3& to_sun) {
+  if (const auto* box = dynamic_cast<const BoxChart*>(&any)) {
+    const auto& e = box->edges_m();
+    return glm::length(e[0]) + glm::length(e[1]) + glm::length(e[2]);
+  }
+  const auto& shell = static_cast<const ShellChart&>(any);
+  // A ray stays a ray in scaled space, and keeps its parameter.
+  const glm::dvec3 from = shell.to_scaled(from_m), along = shell.to_scaled(from_m - to_sun) - from;
+  const double a = glm::dot(along, along), b = glm::dot(from, along);
+  const auto root = [&](double radius, double sign) {
+    const double d = b * b - a * (glm::dot(from, from) - radius * radius);
+    return d > 0 ? (-b + sign * std::sqrt(d)) / a : -1;
+  };
+  const double body = shell.body().equatorial_m, ground = body + std::min(0.0, shell.bottom_m());
+  const double down = root(ground, -1);
+  return std::max(0.0, down > 0 ? down : root(body + shell.bottom_m() + shell.thickness_m(), 1));
+}
+
 }  // namespace
 
 struct ViewMetric::Shape {
@@ -84,10 +105,26 @@ struct ViewMetric::Shape {
   glm::dvec3 edge_m{0.0};  // longest row of grid points along each axis
   glm::dvec3 center_m;
   double radius_m = 0;
+
+  // Of a ray from the eye, in the node as a box about its middle: out by the nearest pair of walls.
+  double path_m(const glm::dvec3& eye_m) const {
+    const glm::dvec3 sight = center_m - eye_m;
+    const double away_m = glm::length(sight);
+    double path_m = glm::length(edge_m);
+    for (std::size_t axis = 0, step = 1; axis < 3; ++axis, step *= 3) {
+      const glm::dvec3 along = glm::normalize(grid_m[13 + step] - grid_m[13 - step]);
+      const double slope = away_m > 0 ? std::abs(glm::dot(along, sight)) / away_m : 1;
+      const double edge = edge_m[int(axis)];
+      if (slope * path_m > edge) path_m = edge / slope;
+    }
+    return path_m;
+  }
 };
 
-ViewMetric::ViewMetric(const Camera& camera, const RenderSettings& settings)
-    : eye_m_(camera.eye_m),
+ViewMetric::ViewMetric(const Camera& camera, const RenderSettings& settings,
+                       const std::optional<glm::dvec3>& to_sun)
+    : to_sun_(to_sun),
+      eye_m_(camera.eye_m),
       forward_(glm::normalize(camera.target_m - camera.eye_m)),
       right_(glm::normalize(glm::cross(forward_, camera.up))),
       up_(glm::cross(right_, forward_)),
@@ -117,6 +154,20 @@ bool ViewMetric::seen(const VolumeInfo& info, const Shape& shape) const {
     return false;
   }
   return on_screen(shape.center_m, shape.radius_m);
+}
+
+bool ViewMetric::shadows_seen(const VolumeInfo& info, const Shape& shape) const {
+  if (!to_sun_) return true;
+#if defined(NEPHO_MUTANT_SHADOW_NONE)
+  return false;
+#endif
+  const double length_m = shadow_length_m(*info.chart, shape.center_m, *to_sun_);
+  const int parts = std::clamp(int(std::ceil(length_m / (2 * shape.radius_m))), 1, 16);
+  const double half_m = 0.5 * length_m / parts;
+  for (int p = 0; p < parts; ++p)
+    if (on_screen(shape.center_m - (2 * p + 1) * half_m * *to_sun_, shape.radius_m + half_m))
+      return true;
+  return false;
 }
 
 bool ViewMetric::seen(const VolumeInfo& info, NodeKey key) const {
@@ -153,7 +204,9 @@ ViewMetric::NodeView ViewMetric::view(const VolumeInfo& info, NodeKey key) const
   // An eye in the node looks at voxels from half a voxel away.
   const double pixels = voxel_m / (std::max(distance_m, voxel_m / 2) * pixel_rad_);
   const double length_m = std::max({shape.edge_m.x, shape.edge_m.y, shape.edge_m.z});
-  return {seen(info, shape) ? pixels : kOffScreen * pixels, length_m};
+  double share = 1;
+  if (!seen(info, shape)) share = shadows_seen(info, shape) ? kOffScreen : kNoShadow;
+  return {share * pixels, length_m, shape.path_m(eye_m)};
 }
 
 }  // namespace nepho

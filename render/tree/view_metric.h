@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "bricks/volume_info.h"
 #include "scene/scene.h"
@@ -11,11 +12,14 @@ namespace nepho {
 // points and the eye's clamped coordinates: exact in rectangular boxes, never too short.
 class ViewMetric {
  public:
-  ViewMetric(const Camera& camera, const RenderSettings& settings);
+  // `to_sun`: unit; without it any shadow may be seen.
+  ViewMetric(const Camera& camera, const RenderSettings& settings,
+             const std::optional<glm::dvec3>& to_sun);
 
   struct NodeView {
-    double voxel_pixels;  // of the axes that a split halves; off-screen: a quarter
+    double voxel_pixels;  // of the axes that a split halves; off-screen: a quarter or sixteenth
     double length_m;      // the longest that a ray can be in the node, but for its diagonal
+    double path_m;        // of a ray from the eye through its middle
   };
   // Of a node that has a finer level.
   NodeView view(const VolumeInfo& info, NodeKey key) const;
@@ -27,7 +31,10 @@ class ViewMetric {
   struct Shape;
   bool on_screen(const glm::dvec3& center_m, double radius_m) const;
   bool seen(const VolumeInfo& info, const Shape& shape) const;
+  // Whether its shadow can fall into the picture. Errs towards true.
+  bool shadows_seen(const VolumeInfo& info, const Shape& shape) const;
 
+  std::optional<glm::dvec3> to_sun_;
   glm::dvec3 eye_m_, forward_, right_, up_;
   double tan_half_height_, tan_half_width_, pixel_rad_;
 };

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <bit>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "analytic_field.h"
@@ -227,6 +228,66 @@ TEST(Forest, NearNodesAreFinerThanFarOnesAndUnseenOnesAreKeptCoarser) {
   r.camera.target_m = {-2000, 500, 500};
   EXPECT_LT(level_at({4, 32, 32}), near);
   EXPECT_GE(level_at({4, 32, 32}), 1) << "kept: it may cast a shadow into view";
+}
+
+// A shadow that falls away from the picture is worth less than one that falls into it.
+TEST(Forest, UnseenNodesAreCoarsestWhereTheirShadowIsUnseenToo) {
+  Refinement r = refinement(64);
+  r.camera = {.eye_m = {-600, 500, 500}, .target_m = {-2000, 500, 500}};
+  r.settings.pixels_per_voxel = 20;
+  const auto level_with_sun = [&](std::optional<glm::dvec3> to_sun) {
+    r.to_sun = to_sun;
+    return leaf_at(build(r).volumes[0], 0, {4, 32, 32}).key.level();
+  };
+  // 125 m at 600 m: 122 pixels, 31 at a quarter, 8 at a sixteenth.
+  EXPECT_EQ(level_with_sun({}), 1);
+  EXPECT_EQ(level_with_sun(glm::dvec3{1, 0, 0}), 1);
+  EXPECT_EQ(level_with_sun(glm::dvec3{-1, 0, 0}), 0);
+  // Beside the picture at first, and in it farther on.
+  EXPECT_EQ(level_with_sun(glm::normalize(glm::dvec3{1, 0.4, 0})), 1);
+}
+
+// A source of noise: bounds that nothing comes near, and what is likely.
+class Likely final : public BrickSource {
+ public:
+  explicit Likely(double deviation_per_m) : deviation_per_m_(deviation_per_m) {
+    info_ = mixed_source().info();
+    info_.refine_by_variance = true;
+  }
+  const VolumeInfo& info() const noexcept override { return info_; }
+  Status summary(NodeKey key, double t, NodeSummary& s) const noexcept override {
+    const Status status = mixed_source().summary(key, t, s);
+    if (s.error_bound_per_m > 0) s.error_bound_per_m = 1;
+    s.unresolved_variance_per_m2 = deviation_per_m_ * deviation_per_m_;
+    return status;
+  }
+  Status read(NodeKey key, double t, BrickView view) const noexcept override {
+    return mixed_source().read(key, t, view);
+  }
+  std::size_t last_error(char* buffer, std::size_t size) const noexcept override {
+    return mixed_source().last_error(buffer, size);
+  }
+
+ private:
+  VolumeInfo info_;
+  double deviation_per_m_;
+};
+
+TEST(Forest, NoiseIsRefinedByWhatIsLikely) {
+  Refinement r = refinement(64);
+  r.settings.pixels_per_voxel = 10;  // a root's voxel: 29
+  const auto finest = [&](double deviation_per_m) {
+    const Likely source(deviation_per_m);
+    const RenderVolume volume = volume_of(source);
+    return build_forest({&volume, 1}, r).volumes[0].finest_level_used;
+  };
+  EXPECT_EQ(finest(0), 0);
+  EXPECT_EQ(finest(1), 2);
+  // Four deviations through 1 km are a depth of 0.1: 29 pixels weigh 18. Half as long and as
+  // large: 6.
+  EXPECT_EQ(finest(2.5e-5), 1);
+  // Below the tolerance, 0.01.
+  EXPECT_EQ(finest(2e-6), 0);
 }
 
 TEST(Forest, ShellFacesAreRefinedWhereTheEyeIs) {

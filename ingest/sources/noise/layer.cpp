@@ -27,7 +27,7 @@ class Octaves {
   Octaves(const LayerSpec& spec, double finest_m) : spec_(spec), finest_m_(finest_m) {}
 
   void add(Domain domain, Shape shape, double cell_m, double share, double stretch = 1) {
-    if (cell_m < 1.1 * finest_m_ || !(share > 0)) return;
+    if (cell_m * std::min(1.0, stretch) < 1.1 * finest_m_ || !(share > 0)) return;
     list_.push_back({domain, shape, cell_m, stretch, share,
                      (spec_.seed * 64 + std::uint32_t(list_.size()) + 1) * 0x9e3779b9u});
   }
@@ -36,7 +36,8 @@ class Octaves {
                 double stretch = 1, double stretch_ratio = 1) {
     for (int n = 0; n < count; ++n) {
       add(domain, shape, cell_m, share, stretch);
-      cell_m *= 0.51, share *= ratio, stretch = std::max(1.0, stretch * stretch_ratio);
+      cell_m *= 0.51, share *= ratio;
+      if (stretch > 1) stretch = std::max(1.0, stretch * stretch_ratio);
     }
   }
   // Weather takes its share of all. Most of the variance, by default: a voxel seen from space holds
@@ -101,7 +102,10 @@ void stratocumulus(Octaves& o, Layer& layer) {
 void stratus(Octaves& o, Layer& layer) {
   const double s = layer.spec.scale_m;
   o.add_many(Domain::kSheet, Shape::kPlain, 2 * s, 0.4, 0.55, 5, 1 + layer.spec.wind_m_per_s / 10);
-  o.add_many(Domain::kVolume, Shape::kPlain, 0.06 * s, 0.05, 0.5, 6);
+  // Cells of a few kilometres, and billows in rows across the wind, as gravity waves leave them.
+  o.add(Domain::kSheet, Shape::kCells, 0.23 * s, 0.16);
+  o.add_many(Domain::kSheet, Shape::kPlain, 0.17 * s, 0.12, 0.5, 2, 0.3, 1);
+  o.add_many(Domain::kVolume, Shape::kBillow, 0.06 * s, 0.07, 0.5, 6);
   o.add_weather();
   layer.rise = {{{0.5, 0.4}, {2.0, 0.6}}};
 }

@@ -43,7 +43,7 @@ struct Octave {
   Domain domain;
   Shape shape;
   double cell_m;       // of the noise's lattice, across the wind; a wavelength is about two cells
-  double stretch = 1;  // along the wind (kSheet, kStreak)
+  double stretch = 1;  // along the wind (kSheet, kStreak); below 1: rows across it
   double amplitude;    // standard deviation
   std::uint32_t seed;
 };

@@ -15,7 +15,7 @@ double roll_off(double cell_m, double voxel_m) {
 }
 
 double kept(const Octave& octave, const Layer& layer, double width_m, double height_m) {
-  double weight = roll_off(octave.cell_m, width_m);
+  double weight = roll_off(octave.cell_m * std::min(1.0, octave.stretch), width_m);
   if (octave.domain == Domain::kVolume) weight *= roll_off(octave.cell_m, height_m);
   if (octave.domain == Domain::kStreak && layer.trail_m > 0) {
     // A streak slopes: its foot lies 2 trail / thickness along the wind per metre of height.
@@ -155,6 +155,9 @@ double LevelResponse::mean(const Row& row, double x) const {
 double LevelResponse::variance(const Row& row, double x) const {
   if (finest_) return 0;
   const double mean = at(mean_, row, x);
+#ifdef NEPHO_MUTANT_VARIANCE
+  return at(square_, row, x);
+#endif
   return std::max(0.0, at(square_, row, x) - mean * mean);
 }
 

@@ -136,6 +136,7 @@ Planet make_planet(const SourceRequest& request) {
   planet.chart->check(info.lattice);
   info.finest = SampleKind::kPoint;
   info.on_planet = true;
+  info.refine_by_variance = true;
   info.surface = make_land(land, std::uint32_t(seed) * 0x9e3779b9u + 5);
   const double code_error =
       most * (0.5 / kTopCode16 + 2 * double(std::numeric_limits<float>::epsilon()));
