@@ -108,7 +108,7 @@ void render_command(const RenderOptions& options) {
     opened.scene.exposure_ev =
         planet ? exposure_on_planet(linear, result.image.optical_depth, white_in_the_sun(opened))
                : exposure_from(linear, result.image.optical_depth);
-  const glm::dvec3 white = planet ? opened.request.sun.irradiance_W_per_m2_nm : glm::dvec3(1);
+  const glm::dvec3 white = display_white(opened.scene);
   const ByteImage shown = is_linear(format)
                               ? ByteImage()
                               : to_display(linear, *opened.scene.exposure_ev, opened.scene.tone_map,

@@ -79,6 +79,15 @@ std::string choice_value(const std::string& option, const std::string& text, con
   refuse(option, listed, text);
 }
 
+ToneMap tone_map_value(const std::string& text) {
+  const std::string word = choice_value("--tone-map", text, "scene", "tone_map");
+  return word == "none" ? ToneMap::kNone : ToneMap::kAces;
+}
+
+const char* tone_map_name(ToneMap tone_map) {
+  return tone_map == ToneMap::kNone ? "none" : "aces";
+}
+
 std::vector<double> list_value(const std::string& option, const std::string& text,
                                std::size_t count, const char* shape) {
   std::vector<double> values;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/scene.h"
+
 namespace nepho {
 
 // Words of the command line as numbers; each throws Error that names the option.
@@ -17,6 +19,9 @@ int integer_value(const std::string& option, const std::string& text, const char
 // One of the grammar's choices.
 std::string choice_value(const std::string& option, const std::string& text, const char* object,
                          const char* field);
+// --tone-map, and back.
+ToneMap tone_map_value(const std::string& text);
+const char* tone_map_name(ToneMap tone_map);
 // "1,2,3" with exactly `count` numbers; `shape` says what was expected: "x,y,z".
 std::vector<double> list_value(const std::string& option, const std::string& text,
                                std::size_t count, const char* shape);
