@@ -14,8 +14,12 @@ using Complex = std::complex<double>;
 // above |y|: BH's own margin of 15 leaves 3.6e-3 in the scattering efficiency at x = 1e4.
 std::vector<Complex> logarithmic_derivatives(Complex y, std::size_t orders) {
   const double size = std::abs(y);
+#if defined(NEPHO_MUTANT_SHORT_RECURRENCE)
+  const auto start = std::size_t(std::max(double(orders), size)) + std::size_t(15);
+#else
   const auto start =
       std::size_t(std::max(double(orders), size) + 12 * std::cbrt(size)) + std::size_t(60);
+#endif
   std::vector<Complex> derivatives(start + 1);
   for (std::size_t n = start; n > 0; --n) {
     const Complex ratio = double(n) / y;

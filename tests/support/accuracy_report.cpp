@@ -1,6 +1,5 @@
 #include "accuracy_report.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -24,17 +23,30 @@ void report_accuracy(const std::string& section, const std::string& name, double
 
 void append_accuracy_row(const std::string& section, const std::string& name, double measured,
                          double bound, const std::string& unit) {
-  for (const std::string& text : {section, name, unit}) refuse_separators(text);
-  const char* path = std::getenv("NEPHO_ACCURACY_OUT");
+  append_report_row("NEPHO_ACCURACY_OUT",
+                    {section, name, report_number(measured), report_number(bound), unit});
+}
+
+std::string report_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", value);
+  return text;
+}
+
+void append_report_row(const char* variable, const std::vector<std::string>& fields) {
+  std::string line;
+  for (const std::string& field : fields) {
+    refuse_separators(field);
+    line += (line.empty() ? "" : "\t") + field;
+  }
+  line += '\n';
+  const char* path = std::getenv(variable);
   if (!path || !*path) return;
   std::FILE* file = std::fopen(path, "a");
   if (!file) throw std::runtime_error(std::string("report_accuracy: cannot append to ") + path);
   // One write of one short line: tests that run side by side do not tear each other's rows.
-  char line[512];
-  const int length = std::snprintf(line, sizeof line, "%s\t%s\t%.1e\t%.1e\t%s\n", section.c_str(),
-                                   name.c_str(), measured, bound, unit.c_str());
-  std::setvbuf(file, nullptr, _IOFBF, sizeof line);
-  std::fwrite(line, 1, std::size_t(std::clamp(length, 0, int(sizeof line) - 1)), file);
+  std::setvbuf(file, nullptr, _IOFBF, line.size());
+  std::fwrite(line.data(), 1, line.size(), file);
   if (std::fclose(file) != 0)
     throw std::runtime_error(std::string("report_accuracy: cannot write to ") + path);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace nepho::test {
 
@@ -13,5 +14,10 @@ void report_accuracy(const std::string& section, const std::string& name, double
 // The row alone, for a test that prints a table of its own.
 void append_accuracy_row(const std::string& section, const std::string& name, double measured,
                          double bound, const std::string& unit);
+
+// What both are made of: appends the fields, tabs between them, to the file that the environment
+// names in `variable`; nothing where it names none. A number as all reports write it: "1.2e-03".
+void append_report_row(const char* variable, const std::vector<std::string>& fields);
+std::string report_number(double value);
 
 }  // namespace nepho::test

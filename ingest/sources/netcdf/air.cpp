@@ -42,6 +42,9 @@ double log_ratio_of(const StandardLayer& layer, double rise) {
 
 // (a - b) / ln(a / b); the arithmetic mean is its limit, to 1e-9 where they are so near.
 double logarithmic_mean(double a, double b) {
+#if defined(NEPHO_MUTANT_LOWER_TEMPERATURE)
+  b = a;
+#endif
   const double ratio = (a - b) / (a + b);
   if (std::abs(ratio) < 1e-3) return 0.5 * (a + b) * (1 - ratio * ratio / 3);
   return (a - b) / std::log(a / b);
