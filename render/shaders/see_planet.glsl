@@ -1,10 +1,8 @@
-// The view ray over a planet: clouds within spans of air, to the ground.
+// The view ray over a planet: clouds within spans of air, to the ground (surface.comp).
 
-Seen see(out float ground_m) {
+Seen see(float ground_m) {
   Seen seen = Seen(vec3(0.0), vec3(1.0), 0.0);
-  ground_m = FAR;
   if (!begin_planet_ray()) return seen;
-  ground_m = surface_distance();
 #ifdef NEPHO_SUN_MAP
   begin_sun_map();
 #endif
@@ -53,20 +51,4 @@ Seen see(out float ground_m) {
   }
   count_overrun(ended);
   return seen;
-}
-
-// Where the ray meets no ground: the night sky, and the sun's disc, whose edge is a pixel wide.
-void add_sky_beyond(inout Seen seen) {
-  const float radius_rad = 0.004675;
-  vec3 apart = vec3(vec_of(frame.to_sun) - ray_direction);
-  float angle = 2.0 * arc_tangent(0.5 * length(apart), sqrt(max(1.0 - 0.25 * dot(apart, apart), 0.0)));
-  float width = max(planet.pixel_rad, 1e-5);
-  float part = clamp((radius_rad - angle) / width + 0.5, 0.0, 1.0);
-  // A pixel wider than the disc holds no more light than the disc.
-  part *= min(1.0, pi * radius_rad * radius_rad / (width * width));
-  float beyond = part / (pi * radius_rad * radius_rad);
-#ifdef NEPHO_AIR
-  beyond += night_sky;
-#endif
-  seen.radiance += seen.transmittance * beyond * vec_of(frame.sun_irradiance);
 }

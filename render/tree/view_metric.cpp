@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "bricks/box_chart.h"
 #include "bricks/shell_chart.h"
@@ -14,6 +15,7 @@ namespace {
 constexpr double kOffScreen = 0.25;
 // Arcs bulge between the grid points of a shell node: 22.5 deg of arc rises 2 % of its chord.
 constexpr double kBulge = 1.05;
+constexpr double kFront = 0.2;  // in front of the eye: at this part of a node's size and distance
 
 struct QBox {
   glm::dvec3 low, high;
@@ -77,6 +79,23 @@ bool behind_planet(const ShellChart& chart, const glm::dvec3& eye_m, const glm::
   return across + radius * std::sqrt(1 + tangent * tangent) < depth * tangent;
 }
 
+// The least, over directions across the line of sight, of what a box with these edges and hats for
+// samples covers: as wide as its widest edge there.
+double least_width_m(const std::array<glm::dvec3, 3>& edges_m, const glm::dvec3& sight) {
+  const glm::dvec3 other = std::abs(sight.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 a = glm::normalize(glm::cross(sight, other)), b = glm::cross(sight, a);
+  constexpr int kDirections = 8;  // of a half turn
+  double least_m = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle = std::numbers::pi * i / kDirections;
+    const glm::dvec3 n = std::cos(angle) * a + std::sin(angle) * b;
+    double most_m = 0;
+    for (const glm::dvec3& edge : edges_m) most_m = std::max(most_m, std::abs(glm::dot(n, edge)));
+    least_m = std::min(least_m, most_m);
+  }
+  return least_m;
+}
+
 }  // namespace
 
 struct ViewMetric::Shape {
@@ -93,7 +112,9 @@ ViewMetric::ViewMetric(const Camera& camera, const RenderSettings& settings)
       up_(glm::cross(right_, forward_)),
       tan_half_height_(std::tan(camera.vertical_fov_rad / 2)),
       tan_half_width_(tan_half_height_ * settings.width / settings.height),
-      pixel_rad_(2 * tan_half_height_ / settings.height) {}
+      pixel_rad_(2 * tan_half_height_ / settings.height),
+      width_(settings.width),
+      height_(settings.height) {}
 
 bool ViewMetric::on_screen(const glm::dvec3& center_m, double radius_m) const {
   const glm::dvec3 offset = center_m - eye_m_;
@@ -121,6 +142,46 @@ bool ViewMetric::seen(const VolumeInfo& info, const Shape& shape) const {
 
 bool ViewMetric::seen(const VolumeInfo& info, NodeKey key) const {
   return seen(info, shape_of<Shape>(*info.chart, key.root(), q_box(info.lattice, key)));
+}
+
+std::optional<ViewMetric::Footprint> ViewMetric::footprint(const VolumeInfo& info,
+                                                           NodeKey key) const {
+  const auto shape = shape_of<Shape>(*info.chart, key.root(), q_box(info.lattice, key));
+  if (!seen(info, shape)) return std::nullopt;
+  const glm::dvec2 all{double(width_), double(height_)};
+  Footprint footprint{all, glm::dvec2{0.0}, std::numeric_limits<double>::infinity()};
+  // Edges of a voxel.
+  const std::array<glm::dvec3, 3> edges_m = {(shape.grid_m[14] - shape.grid_m[12]) / double(kBrickCells),
+                                             (shape.grid_m[16] - shape.grid_m[10]) / double(kBrickCells),
+                                             (shape.grid_m[22] - shape.grid_m[4]) / double(kBrickCells)};
+  bool around = false;
+  if (const auto* box = dynamic_cast<const BoxChart*>(info.chart.get()))
+    around = box->periodic().x || box->periodic().y;
+  for (const glm::dvec3& point_m : shape.grid_m) {
+    const glm::dvec3 offset_m = point_m - eye_m_;
+    const double distance_m = std::max(glm::length(offset_m), 1e-3);
+    const double depth_m = glm::dot(offset_m, forward_);
+    footprint.voxel_pixels =
+        std::min(footprint.voxel_pixels,
+                 least_width_m(edges_m, offset_m / distance_m) / (pixel_rad_ * distance_m));
+    // A node beside the eye or behind it is anywhere.
+    around = around || depth_m < 0.5 * distance_m * kFront || depth_m < shape.radius_m * kFront;
+    if (around) continue;
+    const glm::dvec2 at{
+        0.5 * all.x * (1 + glm::dot(offset_m, right_) / (depth_m * tan_half_width_)),
+        0.5 * all.y * (1 - glm::dot(offset_m, up_) / (depth_m * tan_half_height_))};
+    footprint.low = glm::min(footprint.low, at);
+    footprint.high = glm::max(footprint.high, at);
+  }
+  if (around) {
+    footprint.low = glm::dvec2{0.0};
+    footprint.high = all;
+    return footprint;
+  }
+  const glm::dvec2 bulge = (kBulge - 1) * (footprint.high - footprint.low) + 1.0;
+  footprint.low -= bulge;
+  footprint.high += bulge;
+  return footprint;
 }
 
 ViewMetric::NodeView ViewMetric::view(const VolumeInfo& info, NodeKey key) const {

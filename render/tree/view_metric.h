@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "bricks/volume_info.h"
 #include "scene/scene.h"
@@ -23,6 +24,13 @@ class ViewMetric {
   // behind the planet. Errs towards true.
   bool seen(const VolumeInfo& info, NodeKey key) const;
 
+  struct Footprint {
+    glm::dvec2 low, high;  // of a rectangle around the node, pixels
+    double voxel_pixels;   // least width, in any direction of the picture, of one of its voxels
+  };
+  // Absent: no ray through the picture meets the node.
+  std::optional<Footprint> footprint(const VolumeInfo& info, NodeKey key) const;
+
  private:
   struct Shape;
   bool on_screen(const glm::dvec3& center_m, double radius_m) const;
@@ -30,6 +38,7 @@ class ViewMetric {
 
   glm::dvec3 eye_m_, forward_, right_, up_;
   double tan_half_height_, tan_half_width_, pixel_rad_;
+  int width_, height_;
 };
 
 }  // namespace nepho

@@ -20,7 +20,7 @@ for shader in "$folder"/*.comp; do
   drop=NEPHO_LIT
   case $name in
     light_*) ;;
-    ground.comp | sun_map.comp) grep -q NEPHO_GROUND "$scratch/switches" || continue ;;
+    ground.comp | sun_map.comp | surface.comp) grep -q NEPHO_GROUND "$scratch/switches" || continue ;;
     *) drop=nothing ;;
   esac
   { sed -n 1p "$shader"; grep -v " $drop " "$scratch/switches"; sed 1d "$shader"; } >"$scratch/$name"

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace nepho::gl {
+
+// What the view pass finds in a pixel: radiance in front of the ground (W m-2 sr-1 nm-1) and
+// optical depth of clouds; transmittance and the distance of the ground (m, kNoGround_m: none).
+using PixelTexel = std::array<float, 4>;
+inline constexpr float kNoGround_m = 1e30f;
+struct PixelValues {
+  std::vector<PixelTexel> seen, met;
+};
+
+struct PixelSettings {
+  int width = 0, height = 0;
+  double tolerance = 1e-2;            // of the picture's marches
+  std::vector<std::uint8_t> strides;  // of tiles of kStrideTile pixels: 4, 2 or 1 (pixel_strides.h)
+};
+inline constexpr int kStrideTile = 8;
+
+// Interpolated pixels. Every fourth pixel in both directions is marched; then those on a grid of
+// two and of one between them, where its neighbours on the coarser grid bend by more than kShare of
+// the tolerance (second differences of radiance over luminance, and of transmittance), where the
+// ground has an edge, and where the tree has voxels finer than the grid. All others are
+// interpolated through four points a side. One in kCheckEach of those is marched all the same;
+// where one, or a marched one, is not what it would have been interpolated to, its neighbours are
+// marched too.
+//
+// No OpenGL here: the caller marches what next() names and puts the results in.
+class PixelPlan {
+ public:
+  // `values.met` holds the ground's distances, of all pixels.
+  PixelPlan(PixelSettings settings, const PixelValues& values);
+
+  // Whether marching all pixels at once is no dearer: most are too fine, or the picture is small.
+  bool saves_little() const;
+  // Takes the values of the last pixels named, in their order, and names the next (y width + x).
+  // None: `values` is whole.
+  std::vector<std::uint32_t> next(const PixelValues& marched, PixelValues& values);
+
+  double marched_share() const;
+  // Rms over the picture of what interpolation changes, over its mean luminance, from the checked
+  // pixels; without the ground's own light.
+  double predicted_rms() const;
+  std::size_t checks() const { return checks_; }
+
+ private:
+  enum class State : std::uint8_t { kUnknown, kMarched, kInterpolated };
+  struct Bend;
+
+  std::size_t at(int x, int y) const {
+    return std::size_t(y) * std::size_t(settings_.width) + std::size_t(x);
+  }
+  bool forced(int x, int y, int grid) const;
+  void find_edges(const PixelValues& values);
+  std::vector<std::uint32_t> first_grid();
+  std::vector<std::uint32_t> between(PixelValues& values);
+  std::vector<std::uint32_t> around_misses();
+  void add(std::vector<std::uint32_t>& list, int x, int y);
+  void take(const PixelValues& marched, PixelValues& values);
+  void interpolate(PixelValues& values, int x, int y, double& bend) const;
+  double miss(const PixelTexel& seen, const PixelTexel& met, const PixelTexel& true_seen,
+              const PixelTexel& true_met) const;
+
+  PixelSettings settings_;
+  int last_x_, last_y_;              // of the first grid; beyond it all are marched
+  std::vector<std::uint8_t> edges_;  // of the ground, within two pixels
+  std::vector<State> states_;
+  std::vector<std::uint32_t> asked_;
+  std::vector<std::uint8_t> is_check_;  // of asked_
+  std::vector<std::uint32_t> missed_;
+  double mean_luminance_ = 0;
+  int grid_ = 0, rounds_ = 0;
+  std::size_t marched_ = 0, checks_ = 0;
+  std::array<double, 2> check_squares_{};  // by grid, 4 and 2
+  std::array<std::size_t, 2> check_counts_{}, interpolated_{};
+};
+
+}  // namespace nepho::gl
