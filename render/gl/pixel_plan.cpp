@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace nepho::gl {
 namespace {
 
-constexpr int kFirstGrid = 4, kBlock = 16;  // pixels that are marched side by side
+constexpr int kFirstGrid = 8, kBlock = 16;  // pixels that are marched side by side
 #if defined(NEPHO_MUTANT_PIXEL_TOLERANCE)
 constexpr double kShare = 6;
 #else
 constexpr double kShare = 0.3;  // of the tolerance
 #endif
 constexpr int kMissRounds = 2;
-constexpr std::uint32_t kCheckEach = 64;
+constexpr std::uint32_t kCheckEach = 128;
 constexpr double kDarkShare = 0.1;     // of the mean: what is darker counts as that
 constexpr float kLeastPassed = 0.25f;  // the same of transmittance
 constexpr double kEdge = 0.01;         // second difference of the ground's distance, relative
@@ -48,13 +49,15 @@ Row row_of(const std::vector<PixelTexel>& texels, std::size_t b, std::size_t ste
   }
   return row;
 }
-// The cubic's middle, and how far from it a straight line may be.
-void add_middle(const Row& row, float weight, PixelTexel& middle, PixelTexel& bend) {
+// The cubic's middle; `bend` grows to how far from it a straight line may be.
+PixelTexel middle_of(const Row& row, float (&bend)[4]) {
+  PixelTexel middle;
   for (std::size_t i = 0; i < 4; ++i) {
     const float b2 = row.a[i] - 2 * row.b[i] + row.c[i], c2 = row.b[i] - 2 * row.c[i] + row.d[i];
-    middle[i] += weight * (0.5f * (row.b[i] + row.c[i]) - (b2 + c2) / 16);
-    bend[i] = std::max(bend[i], std::max(std::abs(b2), std::abs(c2)) / 8);
+    middle[i] = 0.5f * (row.b[i] + row.c[i]) - (b2 + c2) / 16;
+    bend[i] = std::max(std::abs(b2), std::abs(c2)) / 8;
   }
+  return middle;
 }
 
 }  // namespace
@@ -102,20 +105,29 @@ void PixelPlan::find_edges(const PixelValues& values) {
           edges_[at(x, j)] = 1;
 }
 
-bool PixelPlan::forced(int x, int y, int grid) const {
+PixelPlan::Stage PixelPlan::stage_at(int number) {
+  const int grid = kFirstGrid >> number / 2, half = grid / 2;
+  const bool along_y = number % 2 == 0;
+  return along_y ? Stage{grid, true, grid, grid, 0, half} : Stage{grid, false, grid, half, half, 0};
+}
+
+bool PixelPlan::forced(int x, int y, const Stage& stage) const {
   const int tiles = (settings_.width + kStrideTile - 1) / kStrideTile;
+  const PixelStrides& strides = settings_.strides;
   return edges_[at(x, y)] != 0 ||
-         settings_.strides[std::size_t(y / kStrideTile * tiles + x / kStrideTile)] < grid;
+         (stage.along_y
+              ? strides.y
+              : strides.x)[std::size_t(y / kStrideTile * tiles + x / kStrideTile)] < stage.grid;
 }
 
 bool PixelPlan::saves_little() const {
   if (std::min(settings_.width, settings_.height) < kLeastSide) return true;
   std::size_t count = 0;
-  for (int y = 0; y < settings_.height; ++y)
-    for (int x = 0; x < settings_.width; ++x) {
-      const int grid = x % 2 == 0 && y % 2 == 0 ? kFirstGrid : 2;
-      count += (x % kFirstGrid == 0 && y % kFirstGrid == 0) || forced(x, y, grid);
-    }
+  for (int number = 0; number < kStages; ++number) {
+    const Stage stage = stage_at(number);
+    for (int y = stage.first_y; y <= last_y_; y += stage.step_y)
+      for (int x = stage.first_x; x <= last_x_; x += stage.step_x) count += forced(x, y, stage);
+  }
   return double(count) > kMostForced * double(states_.size());
 }
 
@@ -136,61 +148,43 @@ std::vector<std::uint32_t> PixelPlan::first_grid() {
   return list;
 }
 
-// At a place between the points of the grid. Adds how far it bends, relative.
-void PixelPlan::interpolate(PixelValues& values, int x, int y, double& bend) const {
-  const int g = grid_, x0 = x / g * g, y0 = y / g * g;
-  const bool between_x = x != x0, between_y = y != y0;
-  const std::size_t p = at(x0, y0), across = std::size_t(g),
-                    down = std::size_t(g) * std::size_t(settings_.width);
-  PixelTexel texels[2] = {};
-  float bends[2] = {}, scale = 0, passed = 0;
-  int which = 0;
-  for (const std::vector<PixelTexel>* from : {&values.seen, &values.met}) {
-    PixelTexel bend_x{}, bend_y{}, middle{};
-    const float rows = between_x && between_y ? 0.5f : 1.0f;
-    if (between_x)
-      for (int j = 0; j <= int(between_y); ++j)
-        add_middle(row_of(*from, p + std::size_t(j) * down, across, x0<g, x0 + 2 * g> last_x_),
-                   rows, middle, bend_x);
-    PixelTexel columns{};
-    if (between_y)
-      for (int i = 0; i <= int(between_x); ++i)
-        add_middle(row_of(*from, p + std::size_t(i) * across, down, y0<g, y0 + 2 * g> last_y_),
-                   rows, between_x ? columns : middle, bend_y);
-    // The surface through the two rows' and the two columns' middles: their sum less the mean.
-    if (between_x && between_y)
-      for (std::size_t i = 0; i < 4; ++i)
-        middle[i] += columns[i] - 0.25f * ((*from)[p][i] + (*from)[p + across][i] +
-                                           (*from)[p + down][i] + (*from)[p + down + across][i]);
-    for (std::size_t i = 0; i < 3; ++i)
-      bends[which] = std::max(bends[which], bend_x[i] + bend_y[i]);
-    (which == 0 ? scale : passed) =
-        which == 0 ? luminance(middle) : std::max({middle[0], middle[1], middle[2]});
-    texels[which++] = middle;
-  }
-  for (float& value : texels[0]) value = std::max(value, 0.0f);
-  for (float& value : texels[1]) value = std::clamp(value, 0.0f, 1.0f);
-  texels[1][3] = values.met[at(x, y)][3];
-  values.seen[at(x, y)] = texels[0];
-  values.met[at(x, y)] = texels[1];
-  bend = std::max(double(bends[0]) / std::max({double(scale), kDarkShare * mean_luminance_, 1e-30}),
-                  double(bends[1] / std::max(passed, kLeastPassed)));
+// Of a place half way; returns how far the neighbours bend, relative.
+double PixelPlan::interpolate(PixelValues& values, int x, int y, const Stage& stage) const {
+  const int place = stage.along_y ? y : x, last = stage.along_y ? last_y_ : last_x_;
+  const int before = place - stage.grid / 2;
+  const std::size_t to = at(x, y);
+  const std::size_t step =
+      std::size_t(stage.grid) * (stage.along_y ? std::size_t(settings_.width) : 1);
+  const std::size_t from = to - step / 2;
+  const bool first = before<stage.grid, none_behind = before + 2 * stage.grid> last;
+  float light_bend[4], passed_bend[4];
+  PixelTexel seen = middle_of(row_of(values.seen, from, step, first, none_behind), light_bend);
+  PixelTexel met = middle_of(row_of(values.met, from, step, first, none_behind), passed_bend);
+  for (float& value : seen) value = std::max(value, 0.0f);
+  for (float& value : met) value = std::clamp(value, 0.0f, 1.0f);
+  met[3] = values.met[to][3];
+  values.seen[to] = seen;
+  values.met[to] = met;
+  const float light = std::max({light_bend[0], light_bend[1], light_bend[2]});
+  const float passed = std::max({passed_bend[0], passed_bend[1], passed_bend[2]});
+  return std::max(
+      double(light) / std::max({double(luminance(seen)), kDarkShare * mean_luminance_, 1e-30}),
+      double(passed / std::max({met[0], met[1], met[2], kLeastPassed})));
 }
 
 std::vector<std::uint32_t> PixelPlan::between(PixelValues& values) {
   std::vector<std::uint32_t> list;
-  const int half = grid_ / 2, block = kBlock * half;
+  const Stage stage = stage_at(stage_);
+  const int block_x = kBlock * stage.step_x, block_y = kBlock * stage.step_y;
   const double most = kShare * settings_.tolerance;
   is_check_.clear();
-  for (int by = 0; by <= last_y_; by += block)
-    for (int bx = 0; bx <= last_x_; bx += block)
-      for (int y = by; y <= std::min(by + block - 1, last_y_); y += half)
-        for (int x = bx; x <= std::min(bx + block - 1, last_x_); x += half) {
-          if (x % grid_ == 0 && y % grid_ == 0) continue;
-          double bend = 0;
-          interpolate(values, x, y, bend);
+  for (int by = stage.first_y; by <= last_y_; by += block_y)
+    for (int bx = stage.first_x; bx <= last_x_; bx += block_x)
+      for (int y = by; y <= std::min(by + block_y - 1, last_y_); y += stage.step_y)
+        for (int x = bx; x <= std::min(bx + block_x - 1, last_x_); x += stage.step_x) {
+          const double bend = interpolate(values, x, y, stage);
           const bool check = hash(std::uint32_t(at(x, y))) % kCheckEach == 0;
-          const bool marched = forced(x, y, grid_) || !(bend <= most);
+          const bool marched = forced(x, y, stage) || !(bend <= most);
           if (marched || check) {
             add(list, x, y);
             is_check_.push_back(!marched);
@@ -201,32 +195,34 @@ std::vector<std::uint32_t> PixelPlan::between(PixelValues& values) {
   return list;
 }
 
-// Neighbours on this grid of what was not as it would have been interpolated to.
+// Neighbours, of this stage, of what was not as it would have been interpolated to.
 std::vector<std::uint32_t> PixelPlan::around_misses() {
   std::vector<std::uint32_t> list;
-  const int half = grid_ / 2;
-  for (const std::uint32_t p : missed_) {
-    const int x = int(p % std::uint32_t(settings_.width)),
-              y = int(p / std::uint32_t(settings_.width));
-    for (int j = std::max(y - grid_, 0); j <= std::min(y + grid_, last_y_); j += half)
-      for (int i = std::max(x - grid_, 0); i <= std::min(x + grid_, last_x_); i += half)
-        if (states_[at(i, j)] == State::kInterpolated) add(list, i, j);
-  }
+  const Stage stage = stage_at(stage_);
+  const auto width = std::uint32_t(settings_.width);
+  for (const std::uint32_t p : missed_)
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) {
+        const int x = int(p % width) + i * stage.step_x, y = int(p / width) + j * stage.step_y;
+        if (x >= 0 && y >= 0 && x <= last_x_ && y <= last_y_ &&
+            states_[at(x, y)] == State::kInterpolated)
+          add(list, x, y);
+      }
   is_check_.assign(list.size(), 0);
   return list;
 }
 
-double PixelPlan::miss(const PixelTexel& seen, const PixelTexel& met, const PixelTexel& true_seen,
-                       const PixelTexel& true_met) const {
-  double worst = 0, passed = 0, light = 0;
+// How far what was interpolated is from what was marched, relative.
+double PixelPlan::miss(const PixelValues& values, std::uint32_t p, const PixelTexel& seen,
+                       const PixelTexel& met) const {
+  double lost = 0, passed = double(kLeastPassed), light = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    worst = std::max(worst, std::abs(double(met[i] - true_met[i])));
-    passed = std::max(passed, double(true_met[i]));
-    light = std::max(light, std::abs(double(seen[i] - true_seen[i])));
+    lost = std::max(lost, std::abs(double(values.met[p][i] - met[i])));
+    passed = std::max(passed, double(met[i]));
+    light = std::max(light, std::abs(double(values.seen[p][i] - seen[i])));
   }
-  return std::max(
-      light / std::max({double(luminance(true_seen)), kDarkShare * mean_luminance_, 1e-30}),
-      worst / std::max(passed, double(kLeastPassed)));
+  const double scale = std::max({double(luminance(seen)), kDarkShare * mean_luminance_, 1e-30});
+  return std::max(light / scale, lost / passed);
 }
 
 void PixelPlan::take(const PixelValues& marched, PixelValues& values) {
@@ -234,18 +230,15 @@ void PixelPlan::take(const PixelValues& marched, PixelValues& values) {
   for (std::size_t n = 0; n < asked_.size(); ++n) {
     const std::uint32_t p = asked_[n];
     const PixelTexel &seen = marched.seen[n], &met = marched.met[n];
-    if (grid_ > 0) {
+    if (stage_ >= 0) {
       if (is_check_[n]) {
         // Of what is seen in all, the ground as bright as the mean.
         const double change = double(luminance(values.seen[p]) - luminance(seen)) +
                               mean_luminance_ * double(luminance(values.met[p]) - luminance(met));
-        const std::size_t which = grid_ == kFirstGrid ? 0 : 1;
-        check_squares_[which] += change * change;
-        ++check_counts_[which];
-        ++checks_;
+        check_squares_[std::size_t(stage_)] += change * change;
+        ++checks_[std::size_t(stage_)];
       }
-      if (miss(values.seen[p], values.met[p], seen, met) > kShare * settings_.tolerance)
-        missed_.push_back(p);
+      if (miss(values, p, seen, met) > kShare * settings_.tolerance) missed_.push_back(p);
     }
     values.seen[p] = seen;
     values.met[p] = met;
@@ -254,25 +247,21 @@ void PixelPlan::take(const PixelValues& marched, PixelValues& values) {
 }
 
 std::vector<std::uint32_t> PixelPlan::next(const PixelValues& marched, PixelValues& values) {
-  if (asked_.empty() && grid_ == 0) return asked_ = first_grid();
+  if (stage_ < 0 && asked_.empty()) return asked_ = first_grid();
   take(marched, values);
-  if (grid_ == 0)
+  if (stage_ < 0)
     for (const std::uint32_t p : asked_)
       mean_luminance_ += double(luminance(values.seen[p])) / double(asked_.size());
-  if (grid_ > 0 && rounds_ < kMissRounds && !missed_.empty()) {
+  if (stage_ >= 0 && rounds_ < kMissRounds) {
     ++rounds_;
     asked_ = around_misses();
     if (!asked_.empty()) return asked_;
   }
-  while (grid_ != 2) {
-    grid_ = grid_ == 0 ? kFirstGrid : grid_ / 2;
+  while (++stage_ < kStages) {
     rounds_ = 0;
     asked_ = between(values);
     if (!asked_.empty()) return asked_;
   }
-  for (int y = 0; y <= last_y_; ++y)
-    for (int x = 0; x <= last_x_; ++x)
-      interpolated_[x % 2 == 0 && y % 2 == 0 ? 0 : 1] += states_[at(x, y)] == State::kInterpolated;
   return {};
 }
 
@@ -282,11 +271,22 @@ double PixelPlan::marched_share() const {
 
 double PixelPlan::predicted_rms() const {
   double squares = 0;
-  for (std::size_t which = 0; which < 2; ++which)
-    if (check_counts_[which] > 0)
-      squares += double(interpolated_[which]) / double(states_.size()) * check_squares_[which] /
-                 double(check_counts_[which]);
+  for (int number = 0; number < kStages; ++number) {
+    const auto i = std::size_t(number);
+    if (checks_[i] == 0) continue;
+    const Stage stage = stage_at(number);
+    std::size_t interpolated = 0;
+    for (int y = stage.first_y; y <= last_y_; y += stage.step_y)
+      for (int x = stage.first_x; x <= last_x_; x += stage.step_x)
+        interpolated += states_[at(x, y)] == State::kInterpolated;
+    squares +=
+        double(interpolated) / double(states_.size()) * check_squares_[i] / double(checks_[i]);
+  }
   return mean_luminance_ > 0 ? std::sqrt(squares) / mean_luminance_ : 0;
+}
+
+std::size_t PixelPlan::checks() const {
+  return std::accumulate(checks_.begin(), checks_.end(), std::size_t{0});
 }
 
 }  // namespace nepho::gl

@@ -14,19 +14,25 @@ struct PixelValues {
   std::vector<PixelTexel> seen, met;
 };
 
+// How far apart marched pixels may be along a row and a column, of tiles of kStrideTile pixels: 4,
+// 2, 1.
+inline constexpr int kStrideTile = 8;
+struct PixelStrides {
+  std::vector<std::uint8_t> x, y;
+};
+
 struct PixelSettings {
   int width = 0, height = 0;
-  double tolerance = 1e-2;            // of the picture's marches
-  std::vector<std::uint8_t> strides;  // of tiles of kStrideTile pixels: 4, 2 or 1 (pixel_strides.h)
+  double tolerance = 1e-2;  // of the picture's marches
+  PixelStrides strides;
 };
-inline constexpr int kStrideTile = 8;
 
-// Interpolated pixels. Every fourth pixel in both directions is marched; then those on a grid of
-// two and of one between them, where its neighbours on the coarser grid bend by more than kShare of
-// the tolerance (second differences of radiance over luminance, and of transmittance), where the
-// ground has an edge, and where the tree has voxels finer than the grid. All others are
-// interpolated through four points a side. One in kCheckEach of those is marched all the same;
-// where one, or a marched one, is not what it would have been interpolated to, its neighbours are
+// Interpolated pixels. Every eighth pixel in both directions is marched. Between them, along
+// columns and then along rows, half way, and half way again until all are there, pixels are interpolated through
+// the four nearest, but marched where those bend by more than kShare of the tolerance (second
+// differences of radiance over luminance, and of transmittance), at edges of the ground, and where
+// the tree has voxels finer than the grid. One in kCheckEach of the others is marched all the same;
+// where one that is marched is not what it would have been interpolated to, its neighbours are
 // marched too.
 //
 // No OpenGL here: the caller marches what next() names and puts the results in.
@@ -45,25 +51,32 @@ class PixelPlan {
   // Rms over the picture of what interpolation changes, over its mean luminance, from the checked
   // pixels; without the ground's own light.
   double predicted_rms() const;
-  std::size_t checks() const { return checks_; }
+  std::size_t checks() const;
 
  private:
   enum class State : std::uint8_t { kUnknown, kMarched, kInterpolated };
-  struct Bend;
+  // Pixels half way between those of a grid, along columns (then along rows, of both kinds).
+  struct Stage {
+    int grid;
+    bool along_y;
+    int step_x, step_y, first_x, first_y;
+  };
+  static constexpr int kStages = 6;
+  static Stage stage_at(int number);
 
   std::size_t at(int x, int y) const {
     return std::size_t(y) * std::size_t(settings_.width) + std::size_t(x);
   }
-  bool forced(int x, int y, int grid) const;
+  bool forced(int x, int y, const Stage& stage) const;
   void find_edges(const PixelValues& values);
   std::vector<std::uint32_t> first_grid();
   std::vector<std::uint32_t> between(PixelValues& values);
   std::vector<std::uint32_t> around_misses();
   void add(std::vector<std::uint32_t>& list, int x, int y);
   void take(const PixelValues& marched, PixelValues& values);
-  void interpolate(PixelValues& values, int x, int y, double& bend) const;
-  double miss(const PixelTexel& seen, const PixelTexel& met, const PixelTexel& true_seen,
-              const PixelTexel& true_met) const;
+  double interpolate(PixelValues& values, int x, int y, const Stage& stage) const;
+  double miss(const PixelValues& values, std::uint32_t p, const PixelTexel& seen,
+              const PixelTexel& met) const;
 
   PixelSettings settings_;
   int last_x_, last_y_;              // of the first grid; beyond it all are marched
@@ -73,10 +86,10 @@ class PixelPlan {
   std::vector<std::uint8_t> is_check_;  // of asked_
   std::vector<std::uint32_t> missed_;
   double mean_luminance_ = 0;
-  int grid_ = 0, rounds_ = 0;
-  std::size_t marched_ = 0, checks_ = 0;
-  std::array<double, 2> check_squares_{};  // by grid, 4 and 2
-  std::array<std::size_t, 2> check_counts_{}, interpolated_{};
+  int stage_ = -1, rounds_ = 0;
+  std::size_t marched_ = 0;
+  std::array<double, kStages> check_squares_{};
+  std::array<std::size_t, kStages> checks_{};
 };
 
 }  // namespace nepho::gl

@@ -201,7 +201,6 @@ void Renderer::light() {
 }
 
 void Renderer::view() {
-  if (planet_) values_.met = planet_->ground_distances(defines(false));
   const gl::Program program = gl::compile("view", nepho_shader_view, defines(true));
   view_report_ = gl::march_view(request_, forest_, program, values_);
 }
@@ -314,6 +313,7 @@ RenderResult Renderer::run() {
   light();
   if (planet_ && planet_->scene().sun_map)
     timed("sun map", [&] { planet_->draw_sun_map(defines(false)); });
+  if (planet_) timed("surface", [&] { values_.met = planet_->ground_distances(defines(false)); });
   timed("view", [&] { view(); });
   if (planet_) timed("ground", [&] { planet_->draw_ground(values_, defines(false)); });
   make_image();

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "bricks/box_chart.h"
 #include "bricks/shell_chart.h"
@@ -79,21 +78,24 @@ bool behind_planet(const ShellChart& chart, const glm::dvec3& eye_m, const glm::
   return across + radius * std::sqrt(1 + tangent * tangent) < depth * tangent;
 }
 
-// The least, over directions across the line of sight, of what a box with these edges and hats for
-// samples covers: as wide as its widest edge there.
-double least_width_m(const std::array<glm::dvec3, 3>& edges_m, const glm::dvec3& sight) {
-  const glm::dvec3 other = std::abs(sight.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 a = glm::normalize(glm::cross(sight, other)), b = glm::cross(sight, a);
-  constexpr int kDirections = 8;  // of a half turn
-  double least_m = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kDirections; ++i) {
-    const double angle = std::numbers::pi * i / kDirections;
-    const glm::dvec3 n = std::cos(angle) * a + std::sin(angle) * b;
-    double most_m = 0;
-    for (const glm::dvec3& edge : edges_m) most_m = std::max(most_m, std::abs(glm::dot(n, edge)));
-    least_m = std::min(least_m, most_m);
+// The length along x, on the picture, of the thinnest layer that a box with these edges can be seen
+// to hold: a layer across (1, m) is as thick as the widest edge in that direction. The largest of
+// |x + m y| is convex in m; its least is where two of them meet, or one is 0.
+double least_run(const std::array<glm::dvec2, 3>& edges) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](double zero_x, double zero_y) {  // m with zero_x + m zero_y = 0
+    const double m = zero_y == 0 ? 0 : -zero_x / zero_y;
+    double most = 0;
+    for (const glm::dvec2& edge : edges) most = std::max(most, std::abs(edge.x + m * edge.y));
+    least = std::min(least, most);
+  };
+  for (std::size_t a = 0; a < 3; ++a) {
+    consider(edges[a].x, edges[a].y);
+    const glm::dvec2 &one = edges[a], &other = edges[(a + 1) % 3];
+    consider(one.x - other.x, one.y - other.y);
+    consider(one.x + other.x, one.y + other.y);
   }
-  return least_m;
+  return least;
 }
 
 }  // namespace
@@ -149,27 +151,31 @@ std::optional<ViewMetric::Footprint> ViewMetric::footprint(const VolumeInfo& inf
   const auto shape = shape_of<Shape>(*info.chart, key.root(), q_box(info.lattice, key));
   if (!seen(info, shape)) return std::nullopt;
   const glm::dvec2 all{double(width_), double(height_)};
-  Footprint footprint{all, glm::dvec2{0.0}, std::numeric_limits<double>::infinity()};
-  // Edges of a voxel.
-  const std::array<glm::dvec3, 3> edges_m = {(shape.grid_m[14] - shape.grid_m[12]) / double(kBrickCells),
-                                             (shape.grid_m[16] - shape.grid_m[10]) / double(kBrickCells),
-                                             (shape.grid_m[22] - shape.grid_m[4]) / double(kBrickCells)};
+  constexpr double kMost = std::numeric_limits<double>::infinity();
+  Footprint footprint{all, glm::dvec2{0.0}, glm::dvec2{kMost}};
+  const glm::dvec2 scale = 0.5 * all / glm::dvec2{tan_half_width_, tan_half_height_};
+  // Edges of a voxel in the camera's axes.
+  const glm::dmat3 to_camera = glm::transpose(glm::dmat3{right_, up_, forward_});
+  const std::array<glm::dvec3, 3> edges_m = {
+      to_camera * (shape.grid_m[14] - shape.grid_m[12]) / double(kBrickCells),
+      to_camera * (shape.grid_m[16] - shape.grid_m[10]) / double(kBrickCells),
+      to_camera * (shape.grid_m[22] - shape.grid_m[4]) / double(kBrickCells)};
   bool around = false;
   if (const auto* box = dynamic_cast<const BoxChart*>(info.chart.get()))
     around = box->periodic().x || box->periodic().y;
   for (const glm::dvec3& point_m : shape.grid_m) {
-    const glm::dvec3 offset_m = point_m - eye_m_;
-    const double distance_m = std::max(glm::length(offset_m), 1e-3);
-    const double depth_m = glm::dot(offset_m, forward_);
-    footprint.voxel_pixels =
-        std::min(footprint.voxel_pixels,
-                 least_width_m(edges_m, offset_m / distance_m) / (pixel_rad_ * distance_m));
-    // A node beside the eye or behind it is anywhere.
-    around = around || depth_m < 0.5 * distance_m * kFront || depth_m < shape.radius_m * kFront;
-    if (around) continue;
-    const glm::dvec2 at{
-        0.5 * all.x * (1 + glm::dot(offset_m, right_) / (depth_m * tan_half_width_)),
-        0.5 * all.y * (1 - glm::dot(offset_m, up_) / (depth_m * tan_half_height_))};
+    const glm::dvec3 offset_m = to_camera * (point_m - eye_m_);
+    // A node beside the eye or behind it is anywhere, and its voxels are large.
+    around = around || offset_m.z < kFront * std::max(glm::length(offset_m), shape.radius_m);
+    if (offset_m.z <= 0) continue;
+    const glm::dvec2 slope = glm::dvec2{offset_m} / offset_m.z;
+    std::array<glm::dvec2, 3> edges;
+    for (std::size_t e = 0; e < 3; ++e)
+      edges[e] = scale * (glm::dvec2{edges_m[e]} - slope * edges_m[e].z) / offset_m.z;
+    footprint.voxel_pixels.x = std::min(footprint.voxel_pixels.x, least_run(edges));
+    for (glm::dvec2& edge : edges) std::swap(edge.x, edge.y);
+    footprint.voxel_pixels.y = std::min(footprint.voxel_pixels.y, least_run(edges));
+    const glm::dvec2 at = 0.5 * all + scale * glm::dvec2{slope.x, -slope.y};
     footprint.low = glm::min(footprint.low, at);
     footprint.high = glm::max(footprint.high, at);
   }

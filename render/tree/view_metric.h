@@ -26,7 +26,8 @@ class ViewMetric {
 
   struct Footprint {
     glm::dvec2 low, high;  // of a rectangle around the node, pixels
-    double voxel_pixels;   // least width, in any direction of the picture, of one of its voxels
+    // The least that a row and a column of the picture are in one of its voxels, however it lies.
+    glm::dvec2 voxel_pixels;
   };
   // Absent: no ray through the picture meets the node.
   std::optional<Footprint> footprint(const VolumeInfo& info, NodeKey key) const;
