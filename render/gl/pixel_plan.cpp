@@ -7,7 +7,7 @@
 namespace nepho::gl {
 namespace {
 
-constexpr int kFirstGrid = 8, kBlock = 16;  // pixels that are marched side by side
+constexpr int kFirstGrid = 8, kBlock = 4;  // pixels that are marched side by side
 #if defined(NEPHO_MUTANT_PIXEL_TOLERANCE)
 constexpr double kShare = 6;
 #else

@@ -218,7 +218,7 @@ class PlanetBuilder {
     data.map_warp_m = float(warp_m);
     data.map_range = float(std::asinh(extent_m / warp_m));
     const double side = std::sqrt(double(request_.settings.width) * request_.settings.height);
-    scene_.map_size = std::clamp(16 * int(side / 16), 128, 768);
+    scene_.map_size = std::clamp(16 * int(side / 16), 128, 512);
   }
 
   const RenderRequest& request_;

@@ -183,20 +183,21 @@ void Renderer::light() {
   if (scene_.lit.empty()) return;
   using gl::LightSamples;
   const std::string switches = defines(false);
+  gl::Program copy;
   timed("sun depth", [&] {
     light_samples_.emplace(forest_);
-    light_pass(gl::compile("light_sun", nepho_shader_light_sun, switches), &LightSamples::needed);
+    copy = gl::compile("light_extend", nepho_shader_light_extend, switches);
+    light_pass(gl::compile("light_sun", nepho_shader_light_sun, switches), &LightSamples::owned);
+    light_pass(copy, &LightSamples::shared, 2);
   });
   if (sky_light())
     timed("sky visibility", [&] {
       light_pass(gl::compile("light_sky", nepho_shader_light_sky, switches), &LightSamples::coarse);
+      light_pass(copy, &LightSamples::shared_coarse, 2);
       light_pass(gl::compile("light_fill", nepho_shader_light_fill, switches),
                  &LightSamples::needed);
     });
-  timed("light of clear samples", [&] {
-    light_pass(gl::compile("light_extend", nepho_shader_light_extend, switches),
-               &LightSamples::pairs, 2);
-  });
+  timed("light of clear samples", [&] { light_pass(copy, &LightSamples::pairs, 2); });
   light_samples_.reset();
 }
 
