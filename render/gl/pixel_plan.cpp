@@ -11,7 +11,7 @@ constexpr int kFirstGrid = 8, kBlock = 4;  // pixels that are marched side by si
 #if defined(NEPHO_MUTANT_PIXEL_TOLERANCE)
 constexpr double kShare = 6;
 #else
-constexpr double kShare = 0.3;  // of the tolerance
+constexpr double kShare = 0.5;  // of the tolerance
 #endif
 constexpr int kMissRounds = 2;
 constexpr std::uint32_t kCheckEach = 128;

@@ -17,36 +17,40 @@ Seen see(float ground_m) {
   // Accounted for up to t; no cloud before `clear`.
   float t = 0.0, clear = 0.0, span_end = last_m;
   int ended = 0;
-  // Loops within loops: llvmpipe runs what is in branches at every turn. A new frame and a span of air
-  // cost most, then a step of cloud, then a leaf.
+  // Loops within loops: llvmpipe runs what is in branches at every turn. A new frame (fp64) costs most,
+  // then a span of air, then a step of cloud, then a leaf.
   while (ended == 0) {
     enter_walks(clear);
+    int entered = 1;
+    while (entered == 1) {
 #ifdef NEPHO_AIR
-    if (t >= span.end_m) next_span();
-    span_end = min(span.end_m, last_m);
+      if (t >= span.end_m) next_span();
+      span_end = min(span.end_m, last_m);
 #endif
-    int inside = 1;
-    while (inside == 1) {
-      bool empty, smooth_, enters;
-      float leave;
-      int looking = 1;
-      while (looking == 1) {
-        leave = settle_walks(clear, empty, smooth_, enters);
-        march.fresh = march.fresh || empty;
-        if (empty && !enters) clear = min(max(clear, leave), span_end);
-        if (enters || clear >= span_end || (!empty && leave > clear)) looking = 0;
-      }
+      int inside = 1;
+      while (inside == 1) {
+        bool empty, smooth_, enters;
+        float leave;
+        int looking = 1;
+        while (looking == 1) {
+          leave = settle_walks(clear, empty, smooth_, enters);
+          march.fresh = march.fresh || empty;
+          if (empty && !enters) clear = min(max(clear, leave), span_end);
+          if (enters || clear >= span_end || (!empty && leave > clear)) looking = 0;
+        }
 #ifdef NEPHO_AIR
-      add_air(seen, t, clear);
+        add_air(seen, t, clear);
 #endif
-      t = clear;
-      if (!enters && t < span_end) {
-        float stop = min(leave, span_end);
-        march_segment(seen, t, stop, smooth_);
-        t = clear = stop;
+        t = clear;
+        if (!enters && t < span_end) {
+          float stop = min(leave, span_end);
+          march_segment(seen, t, stop, smooth_);
+          t = clear = stop;
+        }
+        if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
+        if (enters || ended == 1) entered = 0;
+        if (entered == 0 || t >= span_end) inside = 0;
       }
-      if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
-      if (enters || ended == 1 || t >= span_end) inside = 0;
     }
   }
   count_overrun(ended);
