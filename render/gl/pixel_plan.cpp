@@ -9,10 +9,11 @@ namespace {
 
 constexpr int kFirstGrid = 8, kBlock = 4;  // pixels that are marched side by side
 #if defined(NEPHO_MUTANT_PIXEL_TOLERANCE)
-constexpr double kShare = 6;
+constexpr double kShare = 10;
 #else
 constexpr double kShare = 0.5;  // of the tolerance
 #endif
+constexpr double kRareShare = 0.05;  // of what one pixel may be off
 constexpr int kMissRounds = 2;
 constexpr std::uint32_t kCheckEach = 128;
 constexpr double kDarkShare = 0.1;     // of the mean: what is darker counts as that
@@ -25,7 +26,7 @@ float luminance(const PixelTexel& c) {
   return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
 }
 
-// Drawn by place alone.
+// Drawn by place alone (constants of C. Wellons' hash prospector, lowbias32).
 std::uint32_t hash(std::uint32_t x) {
   x ^= x >> 16;
   x *= 0x7feb352dU;
@@ -282,7 +283,11 @@ double PixelPlan::predicted_rms() const {
     squares +=
         double(interpolated) / double(states_.size()) * check_squares_[i] / double(checks_[i]);
   }
-  return mean_luminance_ > 0 ? std::sqrt(squares) / mean_luminance_ : 0;
+  // The rms of n numbers is itself uncertain, and what is rare falls between them.
+  const double doubt = 1 + 3 / std::sqrt(std::max(double(checks()), 1.0));
+  const double rare = kRareShare * kShare * settings_.tolerance;
+  return mean_luminance_ > 0 ? std::hypot(doubt * std::sqrt(squares) / mean_luminance_, rare)
+                             : rare;
 }
 
 std::size_t PixelPlan::checks() const {

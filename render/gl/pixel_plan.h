@@ -49,7 +49,7 @@ class PixelPlan {
 
   double marched_share() const;
   // Rms over the picture of what interpolation changes, over its mean luminance, from the checked
-  // pixels; without the ground's own light.
+  // pixels, and for their number; the ground as bright as the mean.
   double predicted_rms() const;
   std::size_t checks() const;
 

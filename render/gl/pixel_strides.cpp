@@ -11,6 +11,9 @@ namespace {
 constexpr double kPerVoxel = 1.5;
 
 std::uint8_t stride_of(double voxel_pixels) {
+#if defined(NEPHO_MUTANT_PIXEL_STRIDES)
+  voxel_pixels = 1e9;
+#endif
   const double most = kPerVoxel * voxel_pixels;
   return most >= 8 ? 8 : most >= 4 ? 4 : most >= 2 ? 2 : 1;
 }
@@ -23,7 +26,6 @@ PixelStrides pixel_strides(const RenderRequest& request, const Forest& forest) {
   PixelStrides strides;
   strides.x.assign(std::size_t(columns) * std::size_t(rows), 8);
   strides.y = strides.x;
-#if !defined(NEPHO_MUTANT_PIXEL_STRIDES)
   const ViewMetric metric(request.camera, request.settings);
   for (const VolumeTree& tree : forest.volumes)
     for (const TreeNode& node : tree.nodes) {
@@ -48,7 +50,6 @@ PixelStrides pixel_strides(const RenderRequest& request, const Forest& forest) {
           strides.y[at] = std::min(strides.y[at], stride_y);
         }
     }
-#endif
   return strides;
 }
 
