@@ -106,14 +106,14 @@ TEST_F(Pixels, ChangeLessThanPredictedFromAfar) {
 TEST_F(Pixels, CloudsOfOneSampleAreAllThere) {
   const double side_m = 32e3, cell_m = side_m / 64, low_m = kRadius_m + 1000;
   const FieldSource specks(
-      std::make_shared<BoxChart>(glm::dvec3(-side_m / 2, 5e3, low_m),
+      std::make_shared<BoxChart>(glm::dvec3(-side_m / 2, -side_m / 2, low_m),
                                  glm::dmat3(side_m, 0., 0., 0., side_m, 0., 0., 0., side_m / 8)),
       Lattice({kSplitXy, kSplitXy, kSplitXy, kSplitXyz, kSplitXyz, kSplitXyz}), [=](glm::dvec3 p) {
-        const glm::ivec3 at(glm::round((p - glm::dvec3(-side_m / 2, 5e3, low_m)) / cell_m));
-        return at.x % 7 == 3 && at.y % 7 == 2 && at.z % 2 == 1 && (at.x * at.y) % 5 != 1 ? 1e-3 : 0;
+        const glm::ivec3 at(glm::round((p - glm::dvec3(-side_m / 2, -side_m / 2, low_m)) / cell_m));
+        return at.x % 7 == 3 && at.y % 9 == 2 && at.z % 3 == 1 && (at.x * at.y) % 5 != 1 ? 1e-3 : 0;
       });
   RenderRequest request = large(planet_request({&specks}));
-  look(request, 2500, 0, 50);
+  look(request, 4e4, -85, 80);
   const RenderResult some = pixels_of(request, WhichPixels::kAdaptive);
   const HdrImage all = pixels_of(request, WhichPixels::kAll).image;
   EXPECT_GT(said(some.report).interpolated, 0.1);
