@@ -7,7 +7,6 @@ layout(binding = 0, rgba16f) uniform image3D light_image;
 #define LIGHT_ATLAS_SIZE imageSize(light_image)
 #include "head.glsl"
 #include "walk.glsl"
-#define NEPHO_WALK_STEP 4.0
 #include "march.glsl"
 #include "lit_sample.glsl"
 #ifdef NEPHO_GROUND

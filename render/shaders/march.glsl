@@ -5,9 +5,6 @@
 // Marching all volumes at once: segments in which each volume is inside one leaf, steps in which
 // Simpson integrates the sum of their extinctions. Included by the passes.
 
-#ifndef NEPHO_WALK_STEP
-#define NEPHO_WALK_STEP NEPHO_SUN_STEP
-#endif
 Walk walks[NEPHO_VOLUMES];
 
 layout(std430, binding = 6) buffer OverrunBuffer { uint overruns; };
@@ -198,7 +195,7 @@ float depth_of_segment(float t, float end, bool smooth_) {
   begin_segment(t, end);
   float k0 = total_extinction_at(t), tau = 0.0;
   // Constant extinction is one step.
-  float h = smooth_ ? end - t : NEPHO_WALK_STEP * cell_length(0.5 * (t + end));
+  float h = smooth_ ? end - t : NEPHO_SUN_STEP * cell_length(0.5 * (t + end));
   while (t < end) {
 #ifdef NEPHO_CELL_EXACT
     int sub_steps = 1;
