@@ -26,7 +26,7 @@ constexpr int kFinerLevels = 3, kFinerLevelsOfPlanet = 1;
 constexpr std::size_t kBatch = 16;        // probes
 constexpr std::size_t kLeastProbes = 64;  // before a term can be settled
 constexpr double kSettled = 0.15;         // relative standard error
-constexpr std::size_t kLeastFiner = 48;   // probes, before level of detail can be
+constexpr std::size_t kLeastFiner = 32;   // probes, before level of detail can be
 constexpr double kNegligible = 0.1;       // of the integration term
 constexpr std::uint64_t kManyBricks = 2000;
 

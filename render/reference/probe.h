@@ -20,7 +20,7 @@ namespace nepho {
 //   light model       a table by optical depth and scattering angle, measured on slabs: of the
 //                     clouds' light alone
 // From 64 probes on, no more are marched once the standard error of the integration term is under
-// 15 % of it; over a planet level of detail is left at 48 where it is under a tenth of that term.
+// 15 % of it; over a planet level of detail is left at 32 where it is under a tenth of that term.
 // `tables`: of the planet's air, as the picture was made with; null: made again. Same numbers for
 // any number of threads. Costs about three exact rays per probe, each with seven
 // shadow rays per cell; the finest bricks are kept in 256 MiB. Throws Error where a source fails.
