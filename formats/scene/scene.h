@@ -89,6 +89,7 @@ struct Planet {
 
 enum class Fetch : std::uint8_t { kFilter, kTexels8 };
 enum class Light : std::uint8_t { kSingle, kOctaves };
+enum class WhichPixels : std::uint8_t { kAll, kAdaptive };
 enum class ToneMap : std::uint8_t { kNone, kAces };
 // What draws: the march on the GPU, or the path tracer that it is measured against.
 enum class Engine : std::uint8_t { kMarch, kReference };
@@ -112,6 +113,9 @@ struct RenderSettings {
   std::optional<Fetch> fetch;  // absent: kFilter, or kTexels8 where the tolerance is below 2e-3
   Light light = Light::kOctaves;
   int octaves = 8;
+  // kAdaptive: over a planet, pixels are interpolated where that changes them by less than the
+  // tolerance allows; kAll: each is marched.
+  WhichPixels pixels = WhichPixels::kAdaptive;
   double pixels_per_voxel = 1;  // refinement stops when a voxel is smaller than this many pixels
   int max_level = 31;           // and at this level
   std::uint64_t seed = 1;

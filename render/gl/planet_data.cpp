@@ -231,7 +231,7 @@ class PlanetBuilder {
     data.map_range = float(std::asinh(extent_m / warp_m));
     set_bands();
     const double side = std::sqrt(double(request_.settings.width) * request_.settings.height);
-    scene_.map_size = std::clamp(16 * int(side / 16), 128, 768);
+    scene_.map_size = std::clamp(16 * int(side / 16), 128, 512);
   }
 
   // A texel holds what is in one band as one cloud: decks far apart have bands of their own.

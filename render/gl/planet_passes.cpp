@@ -9,6 +9,7 @@
 
 extern const char* const nepho_shader_ground;
 extern const char* const nepho_shader_sun_map;
+extern const char* const nepho_shader_surface;
 
 namespace nepho::gl {
 namespace {
@@ -40,6 +41,13 @@ Texture make_texture_array(int width, int height, int layers) {
   glTextureStorage3D(id, 1, GL_RGBA32F, width, height, layers);
   set_filter(id, GL_LINEAR);
   return texture;
+}
+
+std::vector<PixelTexel> read_texels(GLuint id, int width, int height) {
+  std::vector<PixelTexel> texels(std::size_t(width) * std::size_t(height));
+  glGetTextureImage(id, 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(PixelTexel)),
+                    texels.data());
+  return texels;
 }
 
 void dispatch_blocks(const Program& program, int width, int height) {
@@ -137,17 +145,24 @@ void PlanetPasses::draw_sun_map(const std::string& switches) {
   glBindTextureUnit(kSunMapUnit, sun_map_.id());
 }
 
-void PlanetPasses::bind_view() const {
+std::vector<PixelTexel> PlanetPasses::ground_distances(const std::string& switches) {
+  const int width = request_.settings.width, height = request_.settings.height;
   glBindImageTexture(1, met_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  dispatch_blocks(compile("surface", nepho_shader_surface, switches), width, height);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  return read_texels(met_.id(), width, height);
 }
 
-void PlanetPasses::draw_ground(GLuint picture, const std::string& switches) {
-  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  glBindImageTexture(0, picture, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+void PlanetPasses::draw_ground(PixelValues& values, const std::string& switches) {
+  const int width = request_.settings.width, height = request_.settings.height;
+  const Texture picture = make_texture_2d(width, height, GL_RGBA32F, GL_NEAREST);
+  glTextureSubImage2D(picture.id(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, values.seen.data());
+  glTextureSubImage2D(met_.id(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, values.met.data());
+  glBindImageTexture(0, picture.id(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
   glBindImageTexture(1, met_.id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
-  dispatch_blocks(compile("ground", nepho_shader_ground, switches), request_.settings.width,
-                  request_.settings.height);
+  dispatch_blocks(compile("ground", nepho_shader_ground, switches), width, height);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  values.seen = read_texels(picture.id(), width, height);
 }
 
 void PlanetPasses::add_to(RenderReport& report) const {

@@ -2,8 +2,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "gl/object.h"
+#include "gl/pixel_plan.h"
 #include "gl/planet_data.h"
 
 namespace nepho::gl {
@@ -19,9 +21,10 @@ class PlanetPasses {
   void upload();
   // What the clouds leave of the sun, for the air; `switches` as for the light passes.
   void draw_sun_map(const std::string& switches);
-  // Binds what the view pass writes for the ground.
-  void bind_view() const;
-  void draw_ground(GLuint picture, const std::string& switches);
+  // In the last component of each pixel's, row 0 first.
+  std::vector<PixelTexel> ground_distances(const std::string& switches);
+  // Adds what is seen of the ground and of the sky beyond to `values.seen`.
+  void draw_ground(PixelValues& values, const std::string& switches);
   void add_to(RenderReport& report) const;
   // As uploaded; null without air.
   std::shared_ptr<const AirTables> tables() const { return tables_; }

@@ -13,6 +13,7 @@
 #include "gl/light_samples.h"
 #include "gl/object.h"
 #include "gl/planet_passes.h"
+#include "gl/view_pass.h"
 #include "reference/probe.h"
 #include "tree/forest.h"
 
@@ -28,8 +29,7 @@ namespace {
 // A ray is dropped when it can add no more than this share of what lies behind.
 constexpr float kLeastTransmittance = 1.0f / 8192, kLeastTransmittanceExact = 1e-6f;
 constexpr double kLeastBend_cells = 2e-3;  // of curved coordinates, that a parabola may miss
-constexpr int kPixelBlock = 256;      // per dispatch, so that a slow device is not held for long
-constexpr GLuint kSampleBinding = 4;  // the phases' in the view pass
+constexpr GLuint kSampleBinding = 4;       // the phases' in the view pass
 constexpr std::size_t kTilesPerDispatch =
     512;  // 729 samples each: within the 65535 groups of OpenGL 4.5
 
@@ -57,7 +57,7 @@ class Renderer {
                                                                       std::size_t) const;
   void light_pass(const gl::Program& program, SampleList list, int entries_each = 1);
   void view();
-  void read_back();
+  void make_image();
   void check_overruns() const;
   void report();
 
@@ -67,8 +67,10 @@ class Renderer {
   std::optional<gl::LightSamples> light_samples_;
   std::optional<gl::PlanetPasses> planet_;  // absent: no planet
   std::array<int, 3> atlas_size_{}, light_size_{};
-  gl::Texture atlas_, ice_atlas_, light_atlas_, picture_;
+  gl::Texture atlas_, ice_atlas_, light_atlas_;
   gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_, ice_;
+  gl::PixelValues values_;
+  gl::ViewReport view_report_;
   RenderResult result_;
 };
 
@@ -181,57 +183,41 @@ void Renderer::light() {
   if (scene_.lit.empty()) return;
   using gl::LightSamples;
   const std::string switches = defines(false);
+  gl::Program copy;
   timed("sun depth", [&] {
     light_samples_.emplace(forest_);
-    light_pass(gl::compile("light_sun", nepho_shader_light_sun, switches), &LightSamples::needed);
+    copy = gl::compile("light_extend", nepho_shader_light_extend, switches);
+    light_pass(gl::compile("light_sun", nepho_shader_light_sun, switches), &LightSamples::owned);
+    light_pass(copy, &LightSamples::shared, 2);
   });
   if (sky_light())
     timed("sky visibility", [&] {
       light_pass(gl::compile("light_sky", nepho_shader_light_sky, switches), &LightSamples::coarse);
+      light_pass(copy, &LightSamples::shared_coarse, 2);
       light_pass(gl::compile("light_fill", nepho_shader_light_fill, switches),
                  &LightSamples::needed);
     });
-  timed("light of clear samples", [&] {
-    light_pass(gl::compile("light_extend", nepho_shader_light_extend, switches),
-               &LightSamples::pairs, 2);
-  });
+  timed("light of clear samples", [&] { light_pass(copy, &LightSamples::pairs, 2); });
   light_samples_.reset();
 }
 
 void Renderer::view() {
-  GLuint id = 0;
-  glCreateTextures(GL_TEXTURE_2D, 1, &id);
-  picture_ = gl::Texture(id);
-  const int width = request_.settings.width, height = request_.settings.height;
-  glTextureStorage2D(id, 1, GL_RGBA32F, width, height);
   const gl::Program program = gl::compile("view", nepho_shader_view, defines(true));
-  glUseProgram(program.id());
-  glBindImageTexture(0, id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  if (planet_) planet_->bind_view();
-  const GLint first = glGetUniformLocation(program.id(), "first_pixel");
-  for (int y = 0; y < height; y += kPixelBlock)
-    for (int x = 0; x < width; x += kPixelBlock) {
-      const int w = std::min(kPixelBlock, width - x), h = std::min(kPixelBlock, height - y);
-      glUniform2i(first, x, y);
-      glDispatchCompute(GLuint((w + 7) / 8), GLuint((h + 7) / 8), 1);
-    }
-  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  view_report_ = gl::march_view(request_, forest_, program, values_);
 }
 
-void Renderer::read_back() {
+void Renderer::make_image() {
   HdrImage& image = result_.image;
   image.width = request_.settings.width;
   image.height = request_.settings.height;
-  const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
-  std::vector<float> rgba(4 * pixels);
-  glGetTextureImage(picture_.id(), 0, GL_RGBA, GL_FLOAT, GLsizei(rgba.size() * sizeof(float)),
-                    rgba.data());
+  const std::size_t pixels = values_.seen.size();
   image.rgb.resize(3 * pixels);
   image.optical_depth.resize(pixels);
   for (std::size_t p = 0; p < pixels; ++p) {
-    for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * p + c] = rgba[4 * p + c];
-    image.optical_depth[p] = rgba[4 * p + 3];
+    for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * p + c] = values_.seen[p][c];
+    image.optical_depth[p] = values_.seen[p][3];
   }
+  values_ = {};
 }
 
 // llvmpipe ends all loops of an invocation after 65535 iterations: a picture that lost some is
@@ -285,7 +271,17 @@ void Renderer::report() {
   report.staging_bytes =
       scene_.bricks.size() * sizeof(LeafBrick) + scene_.ice.size() * sizeof(IceCodes);
   report.image_bytes =
-      16 * std::uint64_t(request_.settings.width) * std::uint64_t(request_.settings.height);
+      32 * std::uint64_t(request_.settings.width) * std::uint64_t(request_.settings.height);
+  if (view_report_.interpolates) {
+    char line_text[160];
+    std::snprintf(
+        line_text, sizeof line_text,
+        "marches of %.1f %% of the pixels: interpolated, predicted to change the picture by "
+        "less than %.2g %% rms (%zu checked)",
+        100 * (1 - view_report_.marched_share), 100 * view_report_.predicted_rms,
+        view_report_.checks);
+    report.left_out.push_back(line_text);
+  }
   if (planet_)
     planet_->add_to(report);
   else
@@ -319,9 +315,10 @@ RenderResult Renderer::run() {
   light();
   if (planet_ && planet_->scene().sun_map)
     timed("sun map", [&] { planet_->draw_sun_map(defines(false)); });
+  if (planet_) timed("surface", [&] { values_.met = planet_->ground_distances(defines(false)); });
   timed("view", [&] { view(); });
-  if (planet_) timed("ground", [&] { planet_->draw_ground(picture_.id(), defines(false)); });
-  timed("read back", [&] { read_back(); });
+  if (planet_) timed("ground", [&] { planet_->draw_ground(values_, defines(false)); });
+  make_image();
   check_overruns();
   if (request_.settings.probe_pixels > 0)
     timed("error probe", [&] {

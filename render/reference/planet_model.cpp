@@ -150,6 +150,10 @@ glm::dvec3 PlanetModel::beyond_W_per_m2_sr_nm(const glm::dvec3& direction) const
 }
 
 bool PlanetModel::sees_sun(const glm::dvec3& direction) const {
+  // A chord is no longer than its arc: most pixels are told by it.
+  const glm::dvec3 apart = to_sun_ - direction;
+  const double most = kSunRadius_rad + std::max(pixel_rad_, 1e-5);
+  if (glm::dot(apart, apart) > most * most) return false;
   return sun_disc(direction) > 0;
 }
 

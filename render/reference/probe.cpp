@@ -3,10 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "physics/physics_cpp.h"
@@ -21,21 +23,35 @@ namespace {
 constexpr double kFinestCache_MiB = 256;
 // Below the picture's own: what is finer still is left out of the term, and the line says so.
 constexpr int kFinerLevels = 3, kFinerLevelsOfPlanet = 1;
-constexpr std::size_t kBatch = 16;  // probes
+constexpr std::size_t kBatch = 16;        // probes
+constexpr std::size_t kLeastProbes = 64;  // before a term can be settled
+constexpr double kSettled = 0.15;         // relative standard error
+constexpr std::size_t kLeastFiner = 32;   // probes, before level of detail can be
+constexpr double kNegligible = 0.1;       // of the integration term
 constexpr std::uint64_t kManyBricks = 2000;
 
-// Neighbours on the picture are neighbours on this curve.
-std::uint64_t morton(std::uint32_t x, std::uint32_t y) {
-  std::uint64_t code = 0;
-  for (int bit = 0; bit < 16; ++bit)
-    code |= std::uint64_t(x >> bit & 1) << 2 * bit | std::uint64_t(y >> bit & 1) << (2 * bit + 1);
-  return code;
+// Every second bit, from bit 0.
+std::uint32_t even_bits(std::uint64_t code) {
+  std::uint32_t bits = 0;
+  for (int bit = 0; bit < 16; ++bit) bits |= std::uint32_t(code >> 2 * bit & 1) << bit;
+  return bits;
 }
 
-Ray pixel_ray(const RenderRequest& request, const HdrImage& picture, std::size_t pixel) {
-  const auto width = std::size_t(picture.width);
-  return camera_ray(request.camera, picture.width, picture.height, int(pixel % width),
-                    int(pixel / width));
+// Calls with each pixel in Morton's order: neighbours on that curve are neighbours on the picture.
+template <class Visit>
+void each_pixel(std::uint32_t width, std::uint32_t height, const Visit& visit) {
+  constexpr std::uint32_t kBlock = 64;
+  // The order within a block is the same in all; blocks that are outside of the picture are passed.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> within;
+  for (std::uint64_t code = 0; code < kBlock * kBlock; ++code)
+    within.emplace_back(even_bits(code), even_bits(code >> 1));
+  const std::uint64_t side = std::bit_ceil((std::max(width, height) + kBlock - 1) / kBlock);
+  for (std::uint64_t code = 0; code < side * side; ++code) {
+    const std::uint32_t left = kBlock * even_bits(code), top = kBlock * even_bits(code >> 1);
+    if (left >= width || top >= height) continue;
+    for (const auto& [x, y] : within)
+      if (left + x < width && top + y < height) visit(left + x, top + y);
+  }
 }
 
 struct Chosen {
@@ -43,12 +59,9 @@ struct Chosen {
   double weight;  // pixels of which it is one
 };
 
-// One pixel of each of `count` patches of equal size.
-void choose(std::vector<std::size_t> shown, std::size_t width, std::size_t count,
-            std::mt19937_64& engine, std::vector<Chosen>& chosen) {
-  std::ranges::sort(shown, {}, [&](std::size_t p) {
-    return morton(std::uint32_t(p % width), std::uint32_t(p / width));
-  });
+// One pixel of each of `count` patches of equal size; `shown` in Morton's order.
+void choose(const std::vector<std::size_t>& shown, std::size_t count, std::mt19937_64& engine,
+            std::vector<Chosen>& chosen) {
   const std::size_t n = std::min(shown.size(), count);
   for (std::size_t s = 0; s < n; ++s) {
     const std::size_t low = s * shown.size() / n, high = (s + 1) * shown.size() / n;
@@ -58,18 +71,18 @@ void choose(std::vector<std::size_t> shown, std::size_t width, std::size_t count
 
 // Of the pixels with some cloud; over a planet also of all others but those on the sun's disc,
 // which would be most of any mean: at least half of the probes where there is cloud, as most errors
-// are.
+// are. Whether a pixel was marched or interpolated counts for nothing.
 std::vector<Chosen> choose_pixels(const RenderRequest& request, const HdrImage& picture,
-                                  const PlanetModel* planet) {
+                                  const CameraRays& rays, const PlanetModel* planet) {
   std::vector<std::size_t> cloudy, clear;
-  for (std::size_t p = 0; p < picture.optical_depth.size(); ++p) {
-    if (planet && planet->sees_sun(pixel_ray(request, picture, p).direction)) continue;
-    if (double(picture.optical_depth[p]) > kShownOpticalDepth)
-      cloudy.push_back(p);
-    else if (planet)
-      clear.push_back(p);
-  }
-  const auto width = std::size_t(picture.width);
+  each_pixel(std::uint32_t(picture.width), std::uint32_t(picture.height),
+             [&](std::uint32_t x, std::uint32_t y) {
+               const std::size_t p = std::size_t(y) * std::size_t(picture.width) + x;
+               const bool cloud = double(picture.optical_depth[p]) > kShownOpticalDepth;
+               if (!cloud && !planet) return;
+               if (planet && planet->sees_sun(rays.ray(int(x), int(y)).direction)) return;
+               (cloud ? cloudy : clear).push_back(p);
+             });
   const auto count = std::size_t(std::max(request.settings.probe_pixels, 0));
   const std::size_t whole = std::max<std::size_t>(cloudy.size() + clear.size(), 1);
   std::size_t of_clear = std::min(count * clear.size() / whole, (count + 1) / 2);
@@ -77,8 +90,8 @@ std::vector<Chosen> choose_pixels(const RenderRequest& request, const HdrImage& 
   of_clear = clear.empty() ? 0 : std::clamp<std::size_t>(of_clear, 1, clear.size());
   std::vector<Chosen> chosen;
   std::mt19937_64 engine(request.settings.seed);
-  choose(std::move(cloudy), width, count - std::min(of_clear, count), engine, chosen);
-  choose(std::move(clear), width, of_clear, engine, chosen);
+  choose(cloudy, count - std::min(of_clear, count), engine, chosen);
+  choose(clear, of_clear, engine, chosen);
   return chosen;
 }
 
@@ -103,7 +116,40 @@ double luminance(const glm::dvec3& c) {
 struct Probe {
   double weight = 1;
   double picture = 0, cut = 0, finest = 0, noisy = 0, light_model = 0;
+  bool marched = false, marched_finest = false;
 };
+
+// Whether more probes would hardly change the rms: its standard error, from the spread of squares.
+bool settled(const std::vector<Probe>& probes) {
+  double weights = 0, squares = 0, spread = 0;
+  std::size_t count = 0;
+  const auto square = [](const Probe& p) { return (p.picture - p.cut) * (p.picture - p.cut); };
+  for (const Probe& p : probes) {
+    if (!p.marched) continue;
+    ++count;
+    weights += p.weight;
+    squares += p.weight * square(p);
+  }
+  if (count < kLeastProbes) return false;
+  const double mean = squares / weights;
+  for (const Probe& p : probes)
+    if (p.marched) spread += p.weight * p.weight * (square(p) - mean) * (square(p) - mean);
+  // Half of the mean square's: of a root.
+  return 0.5 * std::sqrt(spread) / weights <= kSettled * mean;
+}
+
+// Whether finer bricks change next to nothing on the probes so far.
+bool negligible(const std::vector<Probe>& probes) {
+  double finer = 0, integration = 0;
+  std::size_t count = 0;
+  for (const Probe& p : probes) {
+    if (!p.marched_finest) continue;
+    ++count;
+    finer += p.weight * (p.finest - p.cut) * (p.finest - p.cut);
+    integration += p.weight * (p.picture - p.cut) * (p.picture - p.cut);
+  }
+  return count >= kLeastFiner && finer < kNegligible * kNegligible * integration;
+}
 
 }  // namespace
 
@@ -114,9 +160,13 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   if (settings.probe_pixels <= 0) return estimate;
   std::shared_ptr<const PlanetModel> planet;
   if (request.planet) planet = std::make_shared<const PlanetModel>(request, std::move(tables));
-  const std::vector<Chosen> pixels = choose_pixels(request, picture, planet.get());
-  estimate.probe_pixels = int(pixels.size());
+  const CameraRays rays(request.camera, picture.width, picture.height);
+  const std::vector<Chosen> pixels = choose_pixels(request, picture, rays, planet.get());
   if (pixels.empty()) return estimate;
+  const auto ray_of = [&](std::size_t p) {
+    const auto width = std::size_t(picture.width);
+    return rays.ray(int(pixels[p].pixel % width), int(pixels[p].pixel / width));
+  };
 
   const CutLevels cut_levels(cut);
   const NoisyCutLevels noisy_levels(cut, settings.seed);
@@ -128,41 +178,51 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   if (!holds_everything(cut)) finest_march.emplace(finest_levels, request, MarchSettings{}, planet);
   const int octaves = settings.light == Light::kOctaves ? settings.octaves : 1;
 
-  // The smallest of the terms: over a planet, where rays are long, a quarter of the probes.
-  const auto tells_noise = [&](std::size_t p) { return !planet || p % 4 == 0; };
-
+  // In batches, each over all of the picture.
+  const std::size_t batches = std::max<std::size_t>(pixels.size() / kBatch, 1);
+  // The smallest of the terms: over a planet, where rays are long, an eighth of the probes.
+  const auto tells_noise = [&](std::size_t p) { return !planet || p % batches == 0; };
   std::vector<Probe> probes(pixels.size());
-  tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
-    const Ray ray = pixel_ray(request, picture, pixels[p].pixel);
-    const MarchResult exact = cut_march.trace(ray);
-    Probe& probe = probes[p];
-    probe.picture = pixel_luminance(picture, pixels[p].pixel);
-    probe.weight = pixels[p].weight;
-    probe.cut = luminance(exact.radiance_W_per_m2_sr_nm);
-    if (tells_noise(p)) probe.noisy = luminance(noisy_march.trace(ray).radiance_W_per_m2_sr_nm);
-    probe.finest = probe.cut;
-    const glm::dvec3 apart = glm::normalize(request.sun.to_sun) - ray.direction;
-    probe.light_model =
-        luminance(exact.scattered_W_per_m2_sr_nm) *
-        light_model_error(octaves, exact.optical_depth, 0.5 * glm::dot(apart, apart));
-  });
-
-  // In batches, each over all of the picture, until many bricks were read: a planet that is worked
-  // out as it is read has no end of them.
-  const std::size_t batches = planet ? std::max<std::size_t>(pixels.size() / kBatch, 1) : 1;
-  std::size_t marched = 0;
-  for (; finest_march && marched < batches && finest_levels.bricks_read() < kManyBricks; ++marched)
+  const auto each_of_batch = [&](std::size_t batch, const auto& work) {
     tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
-      if (p % batches != marched) return;
-      const Ray ray = pixel_ray(request, picture, pixels[p].pixel);
-      probes[p].finest = luminance(finest_march->trace(ray).radiance_W_per_m2_sr_nm);
+      if (p % batches == batch) work(p);
     });
+  };
+  std::size_t marched = 0;
+  for (; marched < batches && !settled(probes); ++marched)
+    each_of_batch(marched, [&](std::size_t p) {
+      const Ray ray = ray_of(p);
+      const MarchResult exact = cut_march.trace(ray);
+      Probe& probe = probes[p];
+      probe.marched = true;
+      probe.picture = pixel_luminance(picture, pixels[p].pixel);
+      probe.weight = pixels[p].weight;
+      probe.cut = luminance(exact.radiance_W_per_m2_sr_nm);
+      if (tells_noise(p)) probe.noisy = luminance(noisy_march.trace(ray).radiance_W_per_m2_sr_nm);
+      probe.finest = probe.cut;
+      const glm::dvec3 apart = glm::normalize(request.sun.to_sun) - ray.direction;
+      probe.light_model =
+          luminance(exact.scattered_W_per_m2_sr_nm) *
+          light_model_error(octaves, exact.optical_depth, 0.5 * glm::dot(apart, apart));
+    });
+
+  // Over a planet until many bricks were read, as one that is worked out as it is read has no end
+  // of them, or until they are seen to matter little.
+  for (std::size_t batch = 0; finest_march && batch < marched; ++batch) {
+    if (planet && (finest_levels.bricks_read() >= kManyBricks || negligible(probes))) break;
+    each_of_batch(batch, [&](std::size_t p) {
+      probes[p].finest = luminance(finest_march->trace(ray_of(p)).radiance_W_per_m2_sr_nm);
+      probes[p].marched_finest = true;
+    });
+  }
 
   std::vector<PixelPair> integration, level_of_detail, quantisation, light_model;
   for (std::size_t p = 0; p < probes.size(); ++p) {
     const Probe& probe = probes[p];
+    if (!probe.marched) continue;
+    ++estimate.probe_pixels;
     integration.push_back({probe.picture, probe.cut, probe.weight});
-    if (!finest_march || p % batches < marched)
+    if (!finest_march || probe.marched_finest)
       level_of_detail.push_back({probe.cut, probe.finest, probe.weight});
     if (tells_noise(p)) quantisation.push_back({probe.noisy, probe.cut, probe.weight});
     light_model.push_back({probe.cut + probe.light_model, probe.cut, probe.weight});

@@ -8,7 +8,7 @@
 
 namespace nepho {
 
-// The error line of a picture, measured on settings.probe_pixels of its pixels: drawn by
+// The error line of a picture, measured on up to settings.probe_pixels of its pixels: drawn by
 // settings.seed, one from each of as many compact patches of the pixels that show some volume; over
 // a planet, of all pixels but those on the sun's disc, as its air and ground are the picture too.
 // Each is marched again by the CPU (ray_march.h), exactly:
@@ -16,9 +16,11 @@ namespace nepho {
 //   level of detail   finer bricks         against these bricks: up to three levels deeper, over a
 //                     planet one, and there on fewer probes where that reads thousands of bricks
 //   quantisation      these bricks + noise against these bricks (uniform, +-1/2 step; over a planet
-//                     on a quarter of the probes)
+//                     on an eighth of the probes)
 //   light model       a table by optical depth and scattering angle, measured on slabs: of the
 //                     clouds' light alone
+// From 64 probes on, no more are marched once the standard error of the integration term is under
+// 15 % of it; over a planet level of detail is left at 32 where it is under a tenth of that term.
 // `tables`: of the planet's air, as the picture was made with; null: made again. Same numbers for
 // any number of threads. Costs about three exact rays per probe, each with seven
 // shadow rays per cell; the finest bricks are kept in 256 MiB. Throws Error where a source fails.

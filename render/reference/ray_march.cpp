@@ -46,15 +46,25 @@ std::array<glm::dvec3, 3> sky_axes(const glm::dvec3& up) {
   return {up, east, glm::cross(up, east)};
 }
 
-Ray camera_ray(const Camera& camera, int width, int height, int x, int y) {
-  const glm::dvec3 forward = glm::normalize(camera.target_m - camera.eye_m);
-  glm::dvec3 right = glm::cross(forward, camera.up);
-  right = glm::length(right) > 1e-9 ? glm::normalize(right) : across(forward);
-  const glm::dvec3 up = glm::cross(right, forward);
+CameraRays::CameraRays(const Camera& camera, int width, int height)
+    : eye_m_(camera.eye_m),
+      forward_(glm::normalize(camera.target_m - camera.eye_m)),
+      width_(width),
+      height_(height) {
+  glm::dvec3 right = glm::cross(forward_, camera.up);
+  right = glm::length(right) > 1e-9 ? glm::normalize(right) : across(forward_);
   const double half = std::tan(camera.vertical_fov_rad / 2);
-  const double u = (2.0 * x + 1) / width - 1, v = 1 - (2.0 * y + 1) / height;
-  return {camera.eye_m,
-          glm::normalize(forward + half * (u * (double(width) / height) * right + v * up))};
+  right_ = half * width / height * right;
+  up_ = half * glm::cross(right, forward_);
+}
+
+Ray CameraRays::ray(int x, int y) const {
+  const double u = (2.0 * x + 1) / width_ - 1, v = 1 - (2.0 * y + 1) / height_;
+  return {eye_m_, glm::normalize(forward_ + u * right_ + v * up_)};
+}
+
+Ray camera_ray(const Camera& camera, int width, int height, int x, int y) {
+  return CameraRays(camera, width, height).ray(x, y);
 }
 
 RayMarch::RayMarch(const LevelSet& levels, const RenderRequest& request, MarchSettings settings,

@@ -43,6 +43,16 @@ struct MarchResult {
 // Unit rows: up, and two level directions, as the renderer's. Sky light comes from +-each.
 std::array<glm::dvec3, 3> sky_axes(const glm::dvec3& up);
 
+// The rays of a picture's pixels; row 0 is at the top.
+class CameraRays {
+ public:
+  CameraRays(const Camera& camera, int width, int height);
+  Ray ray(int x, int y) const;
+
+ private:
+  glm::dvec3 eye_m_, forward_, right_{0.0}, up_{0.0};
+  int width_, height_;
+};
 // Through the middle of a pixel; row 0 is at the top.
 Ray camera_ray(const Camera& camera, int width, int height, int x, int y);
 

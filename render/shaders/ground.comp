@@ -1,6 +1,6 @@
 #version 450
-// Light of the ground towards the eye, for the pixels that see some: sun through air and clouds by a
-// march of its own, and the sky.
+// Light of what is behind all air and cloud: of the ground, by sun through air and clouds with a march
+// of its own, and by the sky; where there is none, of the night sky and the sun's disc.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler3D atlas;
 layout(binding = 0, rgba32f) uniform image2D picture;
@@ -15,6 +15,22 @@ uniform ivec2 first_pixel;
 #ifdef NEPHO_AIR
 #include "air_tables.glsl"
 #endif
+
+// Where the ray meets no ground: the night sky, and the sun's disc, whose edge is a pixel wide.
+vec3 sky_beyond() {
+  const float radius_rad = 0.004675;
+  vec3 apart = vec3(vec_of(frame.to_sun) - ray_direction);
+  float angle = 2.0 * arc_tangent(0.5 * length(apart), sqrt(max(1.0 - 0.25 * dot(apart, apart), 0.0)));
+  float width = max(planet.pixel_rad, 1e-5);
+  float part = clamp((radius_rad - angle) / width + 0.5, 0.0, 1.0);
+  // A pixel wider than the disc holds no more light than the disc.
+  part *= min(1.0, pi * radius_rad * radius_rad / (width * width));
+  float beyond = part / (pi * radius_rad * radius_rad);
+#ifdef NEPHO_AIR
+  beyond += night_sky;
+#endif
+  return beyond * vec_of(frame.sun_irradiance);
+}
 
 struct Place {
   dvec3 point;
@@ -62,8 +78,13 @@ void main() {
   ivec2 pixel = first_pixel + ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= frame.width || pixel.y >= frame.height) return;
   vec4 seen = imageLoad(met, pixel);
-  if (!(seen.a < FAR) || max(seen.r, max(seen.g, seen.b)) < frame.least_transmittance) return;
   begin_camera_ray(pixel);
+  if (!(seen.a < FAR)) {
+    vec4 before = imageLoad(picture, pixel);
+    imageStore(picture, pixel, vec4(before.rgb + seen.rgb * sky_beyond(), before.a));
+    return;
+  }
+  if (max(seen.r, max(seen.g, seen.b)) < frame.least_transmittance) return;
   if (!begin_planet_ray()) return;
 #ifdef NEPHO_TERRAIN
   begin_surface_ray();

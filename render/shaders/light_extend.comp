@@ -1,5 +1,5 @@
 #version 450
-// Samples in clear air take the light of the nearest that is not.
+// One sample of light is that of another: the same place in another tile, or the nearest in cloud.
 layout(local_size_x = 64) in;
 layout(binding = 0, NEPHO_LIGHT_FORMAT) uniform image3D light_image;
 layout(binding = 0) uniform sampler3D atlas;

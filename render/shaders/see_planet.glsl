@@ -1,10 +1,8 @@
-// The view ray over a planet: clouds within spans of air, to the ground.
+// The view ray over a planet: clouds within spans of air, to the ground (surface.comp).
 
-Seen see(out float ground_m) {
+Seen see(float ground_m) {
   Seen seen = Seen(vec3(0.0), vec3(1.0), 0.0);
-  ground_m = FAR;
   if (!begin_planet_ray()) return seen;
-  ground_m = surface_distance();
 #ifdef NEPHO_SUN_MAP
   begin_sun_map();
 #endif
@@ -19,54 +17,42 @@ Seen see(out float ground_m) {
   // Accounted for up to t; no cloud before `clear`.
   float t = 0.0, clear = 0.0, span_end = last_m;
   int ended = 0;
-  // Loops within loops: llvmpipe runs what is in branches at every turn. A new frame and a span of air
-  // cost most, then a step of cloud, then a leaf.
+  // Loops within loops: llvmpipe runs what is in branches at every turn. A new frame (fp64) costs most,
+  // then a span of air, then a step of cloud, then a leaf.
   while (ended == 0) {
     enter_walks(clear);
+    int entered = 1;
+    while (entered == 1) {
 #ifdef NEPHO_AIR
-    if (t >= span.end_m) next_span();
-    span_end = min(span.end_m, last_m);
+      if (t >= span.end_m) next_span();
+      span_end = min(span.end_m, last_m);
 #endif
-    int inside = 1;
-    while (inside == 1) {
-      bool empty, smooth_, enters;
-      float leave;
-      int looking = 1;
-      while (looking == 1) {
-        leave = settle_walks(clear, empty, smooth_, enters);
-        march.fresh = march.fresh || empty;
-        if (empty && !enters) clear = min(max(clear, leave), span_end);
-        if (enters || clear >= span_end || (!empty && leave > clear)) looking = 0;
-      }
+      int inside = 1;
+      while (inside == 1) {
+        bool empty, smooth_, enters;
+        float leave;
+        int looking = 1;
+        while (looking == 1) {
+          leave = settle_walks(clear, empty, smooth_, enters);
+          march.fresh = march.fresh || empty;
+          if (empty && !enters) clear = min(max(clear, leave), span_end);
+          if (enters || clear >= span_end || (!empty && leave > clear)) looking = 0;
+        }
 #ifdef NEPHO_AIR
-      add_air(seen, t, clear);
+        add_air(seen, t, clear);
 #endif
-      t = clear;
-      if (!enters && t < span_end) {
-        float stop = min(leave, span_end);
-        march_segment(seen, t, stop, smooth_);
-        t = clear = stop;
+        t = clear;
+        if (!enters && t < span_end) {
+          float stop = min(leave, span_end);
+          march_segment(seen, t, stop, smooth_);
+          t = clear = stop;
+        }
+        if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
+        if (enters || ended == 1) entered = 0;
+        if (entered == 0 || t >= span_end) inside = 0;
       }
-      if (t >= last_m || passed(seen) < frame.least_transmittance) ended = 1;
-      if (enters || ended == 1 || t >= span_end) inside = 0;
     }
   }
   count_overrun(ended);
   return seen;
-}
-
-// Where the ray meets no ground: the night sky, and the sun's disc, whose edge is a pixel wide.
-void add_sky_beyond(inout Seen seen) {
-  const float radius_rad = 0.004675;
-  vec3 apart = vec3(vec_of(frame.to_sun) - ray_direction);
-  float angle = 2.0 * arc_tangent(0.5 * length(apart), sqrt(max(1.0 - 0.25 * dot(apart, apart), 0.0)));
-  float width = max(planet.pixel_rad, 1e-5);
-  float part = clamp((radius_rad - angle) / width + 0.5, 0.0, 1.0);
-  // A pixel wider than the disc holds no more light than the disc.
-  part *= min(1.0, pi * radius_rad * radius_rad / (width * width));
-  float beyond = part / (pi * radius_rad * radius_rad);
-#ifdef NEPHO_AIR
-  beyond += night_sky;
-#endif
-  seen.radiance += seen.transmittance * beyond * vec_of(frame.sun_irradiance);
 }

@@ -72,28 +72,28 @@ float height_over_surface(float t_m) { return planet_height(t_m) - surface_at(su
 float terrain_distance(float begin_m, float end_m) {
   float t = begin_m, before = begin_m;
   int ended = 0;
-  float met = FAR;
+  bool under = false;
   while (ended == 0) {
+    float height_m, mu, mu_sun;
+    planet_place(t, height_m, mu, mu_sun);
     float gap = height_over_surface(t);
-    if (gap <= 0.0) {
-      float low = before, high = t;
-      for (int halving = 0; halving < 14; ++halving) {
-        float middle = 0.5 * (low + high);
-        if (height_over_surface(middle) > 0.0) low = middle; else high = middle;
-      }
-      met = high;
-      ended = 1;
-    } else if (t >= end_m) {
+    under = gap <= 0.0;
+    if (under || t >= end_m) {
       ended = 1;
     } else {
       before = t;
-      float height_m, mu, mu_sun;
-      planet_place(t, height_m, mu, mu_sun);
       float least = max(0.3 * planet.surface_cell_m, planet.pixel_rad * t);
       t = min(t + max(gap / (max(-mu, 0.0) + planet.surface_slope), least), end_m);
     }
   }
-  return met;
+  if (!under) return FAR;
+  // Behind the loop: llvmpipe would run it at every turn.
+  float low = before, high = t;
+  for (int halving = 0; halving < 14; ++halving) {
+    float middle = 0.5 * (low + high);
+    if (height_over_surface(middle) > 0.0) low = middle; else high = middle;
+  }
+  return high;
 }
 #endif
 

@@ -1,13 +1,11 @@
 #version 450
-layout(local_size_x = 8, local_size_y = 8) in;
+// Rays of the pixels that the buffer names, in its order: neighbours side by side.
+layout(local_size_x = 64) in;
 layout(binding = 0) uniform sampler3D atlas;
 layout(binding = 1) uniform sampler3D light_atlas;
-layout(binding = 0, rgba32f) uniform writeonly image2D picture;
-#ifdef NEPHO_GROUND
-// For the ground pass: what is seen of the ground, and where the ray meets it.
-layout(binding = 1, rgba32f) uniform writeonly image2D met;
-#endif
-uniform ivec2 first_pixel;
+// Two for each pixel. Before: the second holds its place and the distance of the ground (planets).
+// After: radiance and optical depth; transmittance, and that distance.
+layout(std430, binding = 5) restrict buffer PixelBuffer { vec4 pixels[]; };
 #include "head.glsl"
 vec2 light_tiles;
 vec3 per_light_texel;
@@ -30,7 +28,6 @@ struct Seen {
 float passed(Seen seen) { return most_of(seen.transmittance); }
 #ifdef NEPHO_GROUND
 #include "planet.glsl"
-#include "surface.glsl"
 #endif
 #ifdef NEPHO_SUN_MAP
 #include "sun_map.glsl"
@@ -184,16 +181,15 @@ void main() {
 #endif
   light_tiles = vec2(textureSize(light_atlas, 0).xy / 9);
   per_light_texel = 1.0 / vec3(textureSize(light_atlas, 0));
-  ivec2 pixel = first_pixel + ivec2(gl_GlobalInvocationID.xy);
-  if (pixel.x >= frame.width || pixel.y >= frame.height) return;
-  begin_camera_ray(pixel);
+  int entry = 2 * int(gl_GlobalInvocationID.x);
+  if (entry >= pixels.length()) return;
+  vec4 asked = pixels[entry + 1];
+  begin_camera_ray(ivec2(asked.xy));
 #ifdef NEPHO_GROUND
-  float ground_m;
-  Seen seen = see(ground_m);
-  if (ground_m >= FAR) add_sky_beyond(seen);
-  imageStore(met, pixel, vec4(seen.transmittance, ground_m));
+  Seen seen = see(asked.z);
+  pixels[entry + 1] = vec4(seen.transmittance, asked.z);
 #else
   Seen seen = see();
 #endif
-  imageStore(picture, pixel, vec4(seen.radiance, seen.optical_depth));
+  pixels[entry] = vec4(seen.radiance, seen.optical_depth);
 }

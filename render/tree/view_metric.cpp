@@ -16,6 +16,7 @@ constexpr double kOffScreen = 0.25;
 constexpr double kNoShadow = 1.0 / 16;
 // Arcs bulge between the grid points of a shell node: 22.5 deg of arc rises 2 % of its chord.
 constexpr double kBulge = 1.05;
+constexpr double kFront = 0.2;  // in front of the eye: at this part of a node's size and distance
 
 struct QBox {
   glm::dvec3 low, high;
@@ -98,6 +99,26 @@ double shadow_length_m(const Chart& any, const glm::dvec3& from_m, const glm::dv
   return std::max(0.0, down > 0 ? down : root(body + shell.bottom_m() + shell.thickness_m(), 1));
 }
 
+// The length along x, on the picture, of the thinnest layer that a box with these edges can be seen
+// to hold: a layer across (1, m) is as thick as the widest edge in that direction. The largest of
+// |x + m y| is convex in m; its least is where two of them meet, or one is 0.
+double least_run(const std::array<glm::dvec2, 3>& edges) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](double zero_x, double zero_y) {  // m with zero_x + m zero_y = 0
+    const double m = zero_y == 0 ? 0 : -zero_x / zero_y;
+    double most = 0;
+    for (const glm::dvec2& edge : edges) most = std::max(most, std::abs(edge.x + m * edge.y));
+    least = std::min(least, most);
+  };
+  for (std::size_t a = 0; a < 3; ++a) {
+    consider(edges[a].x, edges[a].y);
+    const glm::dvec2 &one = edges[a], &other = edges[(a + 1) % 3];
+    consider(one.x - other.x, one.y - other.y);
+    consider(one.x + other.x, one.y + other.y);
+  }
+  return least;
+}
+
 }  // namespace
 
 struct ViewMetric::Shape {
@@ -130,7 +151,9 @@ ViewMetric::ViewMetric(const Camera& camera, const RenderSettings& settings,
       up_(glm::cross(right_, forward_)),
       tan_half_height_(std::tan(camera.vertical_fov_rad / 2)),
       tan_half_width_(tan_half_height_ * settings.width / settings.height),
-      pixel_rad_(2 * tan_half_height_ / settings.height) {}
+      pixel_rad_(2 * tan_half_height_ / settings.height),
+      width_(settings.width),
+      height_(settings.height) {}
 
 bool ViewMetric::on_screen(const glm::dvec3& center_m, double radius_m) const {
   const glm::dvec3 offset = center_m - eye_m_;
@@ -172,6 +195,50 @@ bool ViewMetric::shadows_seen(const VolumeInfo& info, const Shape& shape) const 
 
 bool ViewMetric::seen(const VolumeInfo& info, NodeKey key) const {
   return seen(info, shape_of<Shape>(*info.chart, key.root(), q_box(info.lattice, key)));
+}
+
+std::optional<ViewMetric::Footprint> ViewMetric::footprint(const VolumeInfo& info,
+                                                           NodeKey key) const {
+  const auto shape = shape_of<Shape>(*info.chart, key.root(), q_box(info.lattice, key));
+  if (!seen(info, shape)) return std::nullopt;
+  const glm::dvec2 all{double(width_), double(height_)};
+  constexpr double kMost = std::numeric_limits<double>::infinity();
+  Footprint footprint{all, glm::dvec2{0.0}, glm::dvec2{kMost}};
+  const glm::dvec2 scale = 0.5 * all / glm::dvec2{tan_half_width_, tan_half_height_};
+  // Edges of a voxel in the camera's axes.
+  const glm::dmat3 to_camera = glm::transpose(glm::dmat3{right_, up_, forward_});
+  const std::array<glm::dvec3, 3> edges_m = {
+      to_camera * (shape.grid_m[14] - shape.grid_m[12]) / double(kBrickCells),
+      to_camera * (shape.grid_m[16] - shape.grid_m[10]) / double(kBrickCells),
+      to_camera * (shape.grid_m[22] - shape.grid_m[4]) / double(kBrickCells)};
+  bool around = false;
+  if (const auto* box = dynamic_cast<const BoxChart*>(info.chart.get()))
+    around = box->periodic().x || box->periodic().y;
+  for (const glm::dvec3& point_m : shape.grid_m) {
+    const glm::dvec3 offset_m = to_camera * (point_m - eye_m_);
+    // A node beside the eye or behind it is anywhere, and its voxels are large.
+    around = around || offset_m.z < kFront * std::max(glm::length(offset_m), shape.radius_m);
+    if (offset_m.z <= 0) continue;
+    const glm::dvec2 slope = glm::dvec2{offset_m} / offset_m.z;
+    std::array<glm::dvec2, 3> edges;
+    for (std::size_t e = 0; e < 3; ++e)
+      edges[e] = scale * (glm::dvec2{edges_m[e]} - slope * edges_m[e].z) / offset_m.z;
+    footprint.voxel_pixels.x = std::min(footprint.voxel_pixels.x, least_run(edges));
+    for (glm::dvec2& edge : edges) std::swap(edge.x, edge.y);
+    footprint.voxel_pixels.y = std::min(footprint.voxel_pixels.y, least_run(edges));
+    const glm::dvec2 at = 0.5 * all + scale * glm::dvec2{slope.x, -slope.y};
+    footprint.low = glm::min(footprint.low, at);
+    footprint.high = glm::max(footprint.high, at);
+  }
+  if (around) {
+    footprint.low = glm::dvec2{0.0};
+    footprint.high = all;
+    return footprint;
+  }
+  const glm::dvec2 bulge = (kBulge - 1) * (footprint.high - footprint.low) + 1.0;
+  footprint.low -= bulge;
+  footprint.high += bulge;
+  return footprint;
 }
 
 ViewMetric::NodeView ViewMetric::view(const VolumeInfo& info, NodeKey key) const {

@@ -27,6 +27,14 @@ class ViewMetric {
   // behind the planet. Errs towards true.
   bool seen(const VolumeInfo& info, NodeKey key) const;
 
+  struct Footprint {
+    glm::dvec2 low, high;  // of a rectangle around the node, pixels
+    // The least that a row and a column of the picture are in one of its voxels, however it lies.
+    glm::dvec2 voxel_pixels;
+  };
+  // Absent: no ray through the picture meets the node.
+  std::optional<Footprint> footprint(const VolumeInfo& info, NodeKey key) const;
+
  private:
   struct Shape;
   bool on_screen(const glm::dvec3& center_m, double radius_m) const;
@@ -37,6 +45,7 @@ class ViewMetric {
   std::optional<glm::dvec3> to_sun_;
   glm::dvec3 eye_m_, forward_, right_, up_;
   double tan_half_height_, tan_half_width_, pixel_rad_;
+  int width_, height_;
 };
 
 }  // namespace nepho

@@ -175,7 +175,8 @@ TEST(SceneFile, what_is_written_reads_back_to_the_same_bits) {
       "sky": {"zenith_W_per_m2_sr_nm": [0.1, 0.2, 0.3], "horizon_W_per_m2_sr_nm": [1, 1, 1],
       "below_W_per_m2_sr_nm": [0, 0, 0]}, "image": {"width": 33, "height": 44},
       "render": {"budget_mib": 12.5, "tolerance": 0.003, "fetch": "texels8", "light": "single",
-      "octaves": 4, "pixels_per_voxel": 1.5, "max_level": 7, "seed": 77, "probe_pixels": 5},
+      "octaves": 4, "pixels_per_voxel": 1.5, "max_level": 7, "seed": 77, "probe_pixels": 5,
+      "pixels": "all"},
       "exposure_ev": 1.37, "tone_map": "none", "dither": "ordered"})");
   scene.camera.up = glm::normalize(glm::dvec3(0.1, 0.7, 0.3));
   const std::string once = write_scene(scene, "/data");
@@ -194,6 +195,7 @@ TEST(SceneFile, what_is_written_reads_back_to_the_same_bits) {
   EXPECT_EQ(back.volumes[1].phase->asymmetry, 0.7);
   EXPECT_EQ(back.render.seed, 77u);
   EXPECT_EQ(back.render.tolerance, 0.003);
+  EXPECT_EQ(back.render.pixels, WhichPixels::kAll);
   EXPECT_EQ(back.exposure_ev, 1.37);
   EXPECT_TRUE(back.dither);
 }

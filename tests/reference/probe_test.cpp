@@ -102,6 +102,22 @@ TEST(Probe, EachTermIsWithinThreeOfTheWholePicture) {
   }
 }
 
+// An even error is known from 64 probes; one that sits in few pixels asks for all of them.
+TEST(Probe, MarchesOnUntilTheErrorIsKnown) {
+  test::Random random;
+  Case c = make_case(random, false);
+  c.request.settings.probe_pixels = 128;
+  const auto off_by = [&](auto&& offset) {
+    HdrImage picture = c.cut;
+    for (std::size_t i = 0; i < picture.rgb.size(); ++i) picture.rgb[i] += float(offset(i / 3));
+    return estimate_error(c.request, c.forest, picture);
+  };
+  const ErrorEstimate even = off_by([](std::size_t) { return 1e-3; });
+  EXPECT_EQ(even.probe_pixels, 64);
+  const ErrorEstimate rare = off_by([](std::size_t p) { return p % 24 == 7 ? 1e-2 : 1e-5; });
+  EXPECT_GT(rare.probe_pixels, 96);
+}
+
 TEST(Probe, SameNumbersForAnyNumberOfThreadsAndAnotherForAnotherSeed) {
   test::Random random;
   Case c = make_case(random, false);

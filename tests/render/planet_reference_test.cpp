@@ -325,7 +325,8 @@ void expect_error_line(const char* name, RenderRequest request) {
   const HdrImage cut = march_picture(CutLevels(forest), request);
   const HdrImage finest = march_picture(FinestLevels(request.volumes, 64), request);
   std::printf("%s: %d probes\n", name, result.error.probe_pixels);
-  EXPECT_EQ(result.error.probe_pixels, 96);
+  EXPECT_GE(result.error.probe_pixels, 64) << "fewer only where they are seen to be enough";
+  EXPECT_LE(result.error.probe_pixels, 96);
   expect_within_three("integration", result.error.integration,
                       picture_error(result.image, cut, Counts::kAll));
   expect_within_three("level of detail", result.error.level_of_detail,

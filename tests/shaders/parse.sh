@@ -21,7 +21,7 @@ for shader in "$folder"/*.comp; do
   case $name in
     light_*) ;;
     sun_map.comp) grep -q NEPHO_SUN_MAP "$scratch/switches" || continue ;;
-    ground.comp | sun_map.comp) grep -q NEPHO_GROUND "$scratch/switches" || continue ;;
+    ground.comp | surface.comp) grep -q NEPHO_GROUND "$scratch/switches" || continue ;;
     *) drop=nothing ;;
   esac
   { sed -n 1p "$shader"; grep -v " $drop " "$scratch/switches"; sed 1d "$shader"; } >"$scratch/$name"

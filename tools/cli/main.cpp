@@ -105,6 +105,8 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--fetch", o.fetch, "filter (the texture unit) or texels8 (exact)")
       ->group(group);
   command.add_option("--light", o.light, "octaves or single (scattering)")->group(group);
+  command.add_option("--pixels", o.pixels, "adaptive (some interpolated, over planets) or all")
+      ->group(group);
   command.add_option("--max-level", o.max_level, "finest level of the tree to use")->group(group);
   command.add_option("--seed", o.seed, "of what is drawn by chance: the probe's pixels")
       ->group(group);

@@ -196,6 +196,10 @@ void apply_quality(Scene& scene, const RenderOptions& o) {
     settings.light = choice_value("--light", *o.light, "render", "light") == "single"
                          ? Light::kSingle
                          : Light::kOctaves;
+  if (o.pixels)
+    settings.pixels = choice_value("--pixels", *o.pixels, "render", "pixels") == "all"
+                          ? WhichPixels::kAll
+                          : WhichPixels::kAdaptive;
   if (o.max_level)
     settings.max_level = integer_value("--max-level", *o.max_level, "render", "max_level");
   if (o.seed) settings.seed = std::uint64_t(number_value("--seed", *o.seed, "render", "seed"));

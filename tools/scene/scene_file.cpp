@@ -218,6 +218,8 @@ void read_render(const ObjectReader& in, RenderSettings& settings) {
     settings.fetch = *fetch == "filter" ? Fetch::kFilter : Fetch::kTexels8;
   if (const auto light = in.text("light"))
     settings.light = *light == "single" ? Light::kSingle : Light::kOctaves;
+  if (const auto pixels = in.text("pixels"))
+    settings.pixels = *pixels == "all" ? WhichPixels::kAll : WhichPixels::kAdaptive;
   settings.octaves = in.integer("octaves").value_or(settings.octaves);
   settings.pixels_per_voxel = in.number("pixels_per_voxel").value_or(settings.pixels_per_voxel);
   settings.max_level = in.integer("max_level").value_or(settings.max_level);

@@ -130,6 +130,7 @@ constexpr FieldGrammar kRenderFields[] = {
     {"tolerance", kNumber, 1e-6, 1},
     {"fetch", kChoice, 0, 0, "filter|texels8"},
     {"light", kChoice, 0, 0, "single|octaves"},
+    {"pixels", kChoice, 0, 0, "all|adaptive"},
     {"octaves", kInteger, 1, 8},  // those whose error was measured (light_model_table.h)
     {"pixels_per_voxel", kNumber, 1e-3, 1e6},
     {"max_level", kInteger, 0, 31},

@@ -117,6 +117,7 @@ Json write_render(const RenderSettings& settings) {
   if (settings.fetch) out["fetch"] = *settings.fetch == Fetch::kFilter ? "filter" : "texels8";
   out["light"] = settings.light == Light::kSingle ? "single" : "octaves";
   out["octaves"] = settings.octaves;
+  out["pixels"] = settings.pixels == WhichPixels::kAll ? "all" : "adaptive";
   out["pixels_per_voxel"] = settings.pixels_per_voxel;
   out["max_level"] = settings.max_level;
   out["seed"] = settings.seed;

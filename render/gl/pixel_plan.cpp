@@ -1,0 +1,297 @@
+#include "gl/pixel_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace nepho::gl {
+namespace {
+
+constexpr int kFirstGrid = 8, kBlock = 4;  // pixels that are marched side by side
+#if defined(NEPHO_MUTANT_PIXEL_TOLERANCE)
+constexpr double kShare = 10;
+#else
+constexpr double kShare = 0.5;  // of the tolerance
+#endif
+constexpr double kRareShare = 0.05;  // of what one pixel may be off
+constexpr int kMissRounds = 2;
+constexpr std::uint32_t kCheckEach = 128;
+constexpr double kDarkShare = 0.1;     // of the mean: what is darker counts as that
+constexpr float kLeastPassed = 0.25f;  // the same of transmittance
+constexpr double kEdge = 0.01;         // second difference of the ground's distance, relative
+constexpr double kMostForced = 0.6;
+constexpr int kLeastSide = 32;
+
+float luminance(const PixelTexel& c) {
+  return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+}
+
+// Drawn by place alone (constants of C. Wellons' hash prospector, lowbias32).
+std::uint32_t hash(std::uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7feb352dU;
+  x ^= x >> 15;
+  x *= 0x846ca68bU;
+  return x ^ x >> 16;
+}
+
+// Four texels in a row; the outer two may lie beyond the grid and are then those of a parabola.
+struct Row {
+  PixelTexel a, b, c, d;
+};
+Row row_of(const std::vector<PixelTexel>& texels, std::size_t b, std::size_t step, bool first,
+           bool last) {
+  Row row{{}, texels[b], texels[b + step], {}};
+  if (!first) row.a = texels[b - step];
+  if (!last) row.d = texels[b + 2 * step];
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (first) row.a[i] = 3 * row.b[i] - 3 * row.c[i] + row.d[i];
+    if (last) row.d[i] = row.a[i] - 3 * row.b[i] + 3 * row.c[i];
+  }
+  return row;
+}
+// The cubic's middle; `bend` grows to how far from it a straight line may be.
+PixelTexel middle_of(const Row& row, float (&bend)[4]) {
+  PixelTexel middle;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const float b2 = row.a[i] - 2 * row.b[i] + row.c[i], c2 = row.b[i] - 2 * row.c[i] + row.d[i];
+    middle[i] = 0.5f * (row.b[i] + row.c[i]) - (b2 + c2) / 16;
+    bend[i] = std::max(std::abs(b2), std::abs(c2)) / 8;
+  }
+  return middle;
+}
+
+}  // namespace
+
+PixelPlan::PixelPlan(PixelSettings settings, const PixelValues& values)
+    : settings_(std::move(settings)),
+      last_x_((settings_.width - 1) / kFirstGrid * kFirstGrid),
+      last_y_((settings_.height - 1) / kFirstGrid * kFirstGrid) {
+  const std::size_t pixels = std::size_t(settings_.width) * std::size_t(settings_.height);
+  states_.assign(pixels, State::kUnknown);
+  find_edges(values);
+}
+
+// Pixels across which the ground's distance jumps or bends, and two more on each side.
+void PixelPlan::find_edges(const PixelValues& values) {
+  const int width = settings_.width, height = settings_.height;
+  std::vector<std::uint8_t> found(states_.size(), 0);
+  std::vector<float> near(states_.size());  // 1 / distance: linear on a plane
+  for (std::size_t p = 0; p < near.size(); ++p) {
+    const float distance_m = values.met[p][3];
+    near[p] = distance_m < kNoGround_m ? 1 / std::max(distance_m, 1e-3f) : 0.0f;
+  }
+  const auto bends = [&](std::size_t p, std::size_t step) {
+    const float bend = near[p - step] - 2 * near[p] + near[p + step];
+    return std::abs(bend) > float(kEdge) * near[p] && bend != 0;
+  };
+  const auto row = std::size_t(width);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const std::size_t p = at(x, y);
+      if ((x > 0 && x + 1 < width && bends(p, 1)) || (y > 0 && y + 1 < height && bends(p, row)))
+        found[p] = 1;
+    }
+  // Two more on each side, along rows and then columns.
+  edges_.assign(states_.size(), 0);
+  std::vector<std::uint8_t> wide(states_.size(), 0);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (found[at(x, y)])
+        for (int i = std::max(x - 2, 0); i <= std::min(x + 2, width - 1); ++i) wide[at(i, y)] = 1;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (wide[at(x, y)])
+        for (int j = std::max(y - 2, 0); j <= std::min(y + 2, height - 1); ++j)
+          edges_[at(x, j)] = 1;
+}
+
+PixelPlan::Stage PixelPlan::stage_at(int number) {
+  const int grid = kFirstGrid >> number / 2, half = grid / 2;
+  const bool along_y = number % 2 == 0;
+  return along_y ? Stage{grid, true, grid, grid, 0, half} : Stage{grid, false, grid, half, half, 0};
+}
+
+bool PixelPlan::forced(int x, int y, const Stage& stage) const {
+  const int tiles = (settings_.width + kStrideTile - 1) / kStrideTile;
+  const PixelStrides& strides = settings_.strides;
+  return edges_[at(x, y)] != 0 ||
+         (stage.along_y
+              ? strides.y
+              : strides.x)[std::size_t(y / kStrideTile * tiles + x / kStrideTile)] < stage.grid;
+}
+
+bool PixelPlan::saves_little() const {
+  if (std::min(settings_.width, settings_.height) < kLeastSide) return true;
+  std::size_t count = 0;
+  for (int number = 0; number < kStages; ++number) {
+    const Stage stage = stage_at(number);
+    for (int y = stage.first_y; y <= last_y_; y += stage.step_y)
+      for (int x = stage.first_x; x <= last_x_; x += stage.step_x) count += forced(x, y, stage);
+  }
+  return double(count) > kMostForced * double(states_.size());
+}
+
+void PixelPlan::add(std::vector<std::uint32_t>& list, int x, int y) {
+  states_[at(x, y)] = State::kMarched;
+  list.push_back(std::uint32_t(at(x, y)));
+}
+
+std::vector<std::uint32_t> PixelPlan::first_grid() {
+  std::vector<std::uint32_t> list;
+  const int block = kBlock * kFirstGrid / 2;
+  for (int by = 0; by < settings_.height; by += block)
+    for (int bx = 0; bx < settings_.width; bx += block)
+      for (int y = by; y < std::min(by + block, settings_.height); ++y)
+        for (int x = bx; x < std::min(bx + block, settings_.width); ++x)
+          if ((x % kFirstGrid == 0 && y % kFirstGrid == 0) || x > last_x_ || y > last_y_)
+            add(list, x, y);
+  return list;
+}
+
+// Of a place half way; returns how far the neighbours bend, relative.
+double PixelPlan::interpolate(PixelValues& values, int x, int y, const Stage& stage) const {
+  const int place = stage.along_y ? y : x, last = stage.along_y ? last_y_ : last_x_;
+  const int before = place - stage.grid / 2;
+  const std::size_t to = at(x, y);
+  const std::size_t step =
+      std::size_t(stage.grid) * (stage.along_y ? std::size_t(settings_.width) : 1);
+  const std::size_t from = to - step / 2;
+  const bool first = before<stage.grid, none_behind = before + 2 * stage.grid> last;
+  float light_bend[4], passed_bend[4];
+  PixelTexel seen = middle_of(row_of(values.seen, from, step, first, none_behind), light_bend);
+  PixelTexel met = middle_of(row_of(values.met, from, step, first, none_behind), passed_bend);
+  for (float& value : seen) value = std::max(value, 0.0f);
+  for (float& value : met) value = std::clamp(value, 0.0f, 1.0f);
+  met[3] = values.met[to][3];
+  values.seen[to] = seen;
+  values.met[to] = met;
+  const float light = std::max({light_bend[0], light_bend[1], light_bend[2]});
+  const float passed = std::max({passed_bend[0], passed_bend[1], passed_bend[2]});
+  return std::max(
+      double(light) / std::max({double(luminance(seen)), kDarkShare * mean_luminance_, 1e-30}),
+      double(passed / std::max({met[0], met[1], met[2], kLeastPassed})));
+}
+
+std::vector<std::uint32_t> PixelPlan::between(PixelValues& values) {
+  std::vector<std::uint32_t> list;
+  const Stage stage = stage_at(stage_);
+  const int block_x = kBlock * stage.step_x, block_y = kBlock * stage.step_y;
+  const double most = kShare * settings_.tolerance;
+  is_check_.clear();
+  for (int by = stage.first_y; by <= last_y_; by += block_y)
+    for (int bx = stage.first_x; bx <= last_x_; bx += block_x)
+      for (int y = by; y <= std::min(by + block_y - 1, last_y_); y += stage.step_y)
+        for (int x = bx; x <= std::min(bx + block_x - 1, last_x_); x += stage.step_x) {
+          const double bend = interpolate(values, x, y, stage);
+          const bool check = hash(std::uint32_t(at(x, y))) % kCheckEach == 0;
+          const bool marched = forced(x, y, stage) || !(bend <= most);
+          if (marched || check) {
+            add(list, x, y);
+            is_check_.push_back(!marched);
+          } else {
+            states_[at(x, y)] = State::kInterpolated;
+          }
+        }
+  return list;
+}
+
+// Neighbours, of this stage, of what was not as it would have been interpolated to.
+std::vector<std::uint32_t> PixelPlan::around_misses() {
+  std::vector<std::uint32_t> list;
+  const Stage stage = stage_at(stage_);
+  const auto width = std::uint32_t(settings_.width);
+  for (const std::uint32_t p : missed_)
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) {
+        const int x = int(p % width) + i * stage.step_x, y = int(p / width) + j * stage.step_y;
+        if (x >= 0 && y >= 0 && x <= last_x_ && y <= last_y_ &&
+            states_[at(x, y)] == State::kInterpolated)
+          add(list, x, y);
+      }
+  is_check_.assign(list.size(), 0);
+  return list;
+}
+
+// How far what was interpolated is from what was marched, relative.
+double PixelPlan::miss(const PixelValues& values, std::uint32_t p, const PixelTexel& seen,
+                       const PixelTexel& met) const {
+  double lost = 0, passed = double(kLeastPassed), light = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    lost = std::max(lost, std::abs(double(values.met[p][i] - met[i])));
+    passed = std::max(passed, double(met[i]));
+    light = std::max(light, std::abs(double(values.seen[p][i] - seen[i])));
+  }
+  const double scale = std::max({double(luminance(seen)), kDarkShare * mean_luminance_, 1e-30});
+  return std::max(light / scale, lost / passed);
+}
+
+void PixelPlan::take(const PixelValues& marched, PixelValues& values) {
+  missed_.clear();
+  for (std::size_t n = 0; n < asked_.size(); ++n) {
+    const std::uint32_t p = asked_[n];
+    const PixelTexel &seen = marched.seen[n], &met = marched.met[n];
+    if (stage_ >= 0) {
+      if (is_check_[n]) {
+        // Of what is seen in all, the ground as bright as the mean.
+        const double change = double(luminance(values.seen[p]) - luminance(seen)) +
+                              mean_luminance_ * double(luminance(values.met[p]) - luminance(met));
+        check_squares_[std::size_t(stage_)] += change * change;
+        ++checks_[std::size_t(stage_)];
+      }
+      if (miss(values, p, seen, met) > kShare * settings_.tolerance) missed_.push_back(p);
+    }
+    values.seen[p] = seen;
+    values.met[p] = met;
+  }
+  marched_ += asked_.size();
+}
+
+std::vector<std::uint32_t> PixelPlan::next(const PixelValues& marched, PixelValues& values) {
+  if (stage_ < 0 && asked_.empty()) return asked_ = first_grid();
+  take(marched, values);
+  if (stage_ < 0)
+    for (const std::uint32_t p : asked_)
+      mean_luminance_ += double(luminance(values.seen[p])) / double(asked_.size());
+  if (stage_ >= 0 && rounds_ < kMissRounds) {
+    ++rounds_;
+    asked_ = around_misses();
+    if (!asked_.empty()) return asked_;
+  }
+  while (++stage_ < kStages) {
+    rounds_ = 0;
+    asked_ = between(values);
+    if (!asked_.empty()) return asked_;
+  }
+  return {};
+}
+
+double PixelPlan::marched_share() const {
+  return double(marched_) / double(states_.size());
+}
+
+double PixelPlan::predicted_rms() const {
+  double squares = 0;
+  for (int number = 0; number < kStages; ++number) {
+    const auto i = std::size_t(number);
+    if (checks_[i] == 0) continue;
+    const Stage stage = stage_at(number);
+    std::size_t interpolated = 0;
+    for (int y = stage.first_y; y <= last_y_; y += stage.step_y)
+      for (int x = stage.first_x; x <= last_x_; x += stage.step_x)
+        interpolated += states_[at(x, y)] == State::kInterpolated;
+    squares +=
+        double(interpolated) / double(states_.size()) * check_squares_[i] / double(checks_[i]);
+  }
+  // The rms of n numbers is itself uncertain, and what is rare falls between them.
+  const double doubt = 1 + 3 / std::sqrt(std::max(double(checks()), 1.0));
+  const double rare = kRareShare * kShare * settings_.tolerance;
+  return mean_luminance_ > 0 ? std::hypot(doubt * std::sqrt(squares) / mean_luminance_, rare)
+                             : rare;
+}
+
+std::size_t PixelPlan::checks() const {
+  return std::accumulate(checks_.begin(), checks_.end(), std::size_t{0});
+}
+
+}  // namespace nepho::gl
