@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "tree/view_metric.h"
 
@@ -26,7 +27,7 @@ PixelStrides pixel_strides(const RenderRequest& request, const Forest& forest) {
   PixelStrides strides;
   strides.x.assign(std::size_t(columns) * std::size_t(rows), 8);
   strides.y = strides.x;
-  const ViewMetric metric(request.camera, request.settings);
+  const ViewMetric metric(request.camera, request.settings, std::nullopt);
   for (const VolumeTree& tree : forest.volumes)
     for (const TreeNode& node : tree.nodes) {
       if (!node.seen || (node.kind != NodeKind::kBrick && node.kind != NodeKind::kConstant))
