@@ -25,5 +25,6 @@ check 'tools/image/oiio' 'find_(package|path)\(.*OpenImageIO' 'OpenImageIO/'
 check 'ingest/geo|tests' 'find_package\(GeographicLib' 'GeographicLib/'
 check 'tools/sun' 'find_path\(LIBNOVA' 'libnova/'
 check 'tools' 'find_package\(CLI11' 'CLI/'
+check 'tests/support' 'find_package\(Boost' 'boost/'
 check 'tools|tests' 'find_package\(nlohmann_json' 'nlohmann/'
 exit $failed
