@@ -1,5 +1,3 @@
-#include <numbers>
-
 #include "analytic_field.h"
 #include "truth_support.h"
 
@@ -10,11 +8,6 @@
 
 namespace nepho::test {
 namespace {
-
-using std::numbers::pi;
-
-// A sphere of 1 km, as a shell that leaves 1e-9 of its volume out in the middle.
-constexpr double kRadius_m = 500;
 
 struct Ball {
   std::string name;
@@ -27,13 +20,11 @@ void PrintTo(const Ball& ball, std::ostream* out) {
 
 std::vector<Compared> run(const Ball& ball, double planted = 1) {
   Medium medium;
-  const double per_m = planted * ball.depth / (2 * kRadius_m);
-  medium.add(std::make_shared<ShellChart>(Ellipsoid::sphere(kRadius_m), -0.999 * kRadius_m, 0.0),
-             Lattice({}), [=](const glm::dvec3&) { return per_m; }, ball.phase);
+  add_ball(medium, planted * ball.depth, ball.phase);
   const PathTracer& tracer = medium.tracer();
   const auto ours = measure_to<1>(1, [&](Random& random) {
     const glm::dvec3 out = turned({0, 0, 1}, sample_hg(0, random.uniform()), random);
-    const Ray in{kRadius_m * out, cosine_law(-out, random)};
+    const Ray in{kBallRadius_m * out, cosine_law(-out, random)};
     return std::array{double(walk(tracer, in, random).scatterings)};
   });
   return {{"scatterings", ours[0], {2.0 / 3.0 * ball.depth}}};

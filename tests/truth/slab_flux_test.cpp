@@ -23,7 +23,7 @@ const std::vector<SlabFlux> kSlabs{
     {"g0_tau8_absorbing", 0, 0.9, 8, 1, kTent, true, false},
     {"g75_tau01", 0.75, 1, 0.1, 0.2, kTent, true, true},
     {"g75_tau8", 0.75, 1, 8, 0.5, kTent, true, true},
-    {"g75_tau32_dim", 0.75, 0.999, 32, 1, kEven, true, true},
+    {"g75_tau32_dim", 0.75, 0.999, 32, 1, kEven, true, false},
     {"g75_tau2_absorbing", 0.75, 0.9, 2, 0.2, kTent, true, true},
     {"g85_tau01", 0.85, 1, 0.1, 0.2, kEven, true, true},
     {"g85_tau1", 0.85, 1, 1, 1, kEven, true, true},

@@ -30,6 +30,14 @@ double sample_factor() {
   return text ? std::max(1.0, std::atof(text)) : 1.0;
 }
 
+std::uint64_t case_seed() {
+  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+  std::uint64_t seed = 0xcbf29ce484222325u;  // FNV-1a
+  for (const char* names : {test->test_suite_name(), test->name()})
+    for (const char* c = names; *c; ++c) seed = (seed ^ std::uint64_t(*c)) * 0x100000001b3u;
+  return seed;
+}
+
 void expect_agreement(const std::string& name, const std::vector<Compared>& all) {
   ASSERT_FALSE(all.empty());
   for (const Compared& c : all) {
@@ -87,6 +95,13 @@ void add_slab(Medium& medium, Profile profile, double optical_depth, const Phase
         return 2 * mean_per_m * (1 - std::abs(2 * p.z / kSlab_m - 1));
       },
       phase, co_albedo);
+}
+
+void add_ball(Medium& medium, double optical_depth, const Phase& phase, double co_albedo) {
+  const double per_m = optical_depth / (2 * kBallRadius_m);
+  medium.add(
+      std::make_shared<ShellChart>(Ellipsoid::sphere(kBallRadius_m), -0.999 * kBallRadius_m, 0.0),
+      Lattice({}), [=](const glm::dvec3&) { return per_m; }, phase, co_albedo);
 }
 
 }  // namespace nepho::test
