@@ -26,15 +26,16 @@ std::vector<Compared> run(const Slant& slant, double planted = 1) {
     ++row;
   // Of optical depth 1 along the ray. Trilinear cells of H / 25 add (1 / 25)^2 / 12 = 1.3e-4 to it,
   // and 10 scale heights leave 5e-5 out.
-  const double per_m = std::exp(slant.height_m / slant.scale_m) /
-                       (slant.scale_m * table.at(row, "Chapman"));
+  const double per_m =
+      std::exp(slant.height_m / slant.scale_m) / (slant.scale_m * table.at(row, "Chapman"));
   Medium medium;
-  medium.add(std::make_shared<ShellChart>(Ellipsoid::sphere(kRadius_m), 0.0, 10 * slant.scale_m),
-             Lattice(std::vector<SplitMask>(5, kSplitZ)),
-             [&](const glm::dvec3& p) {
-               return planted * per_m * std::exp((kRadius_m - glm::length(p)) / slant.scale_m);
-             },
-             hg(0));
+  medium.add(
+      std::make_shared<ShellChart>(Ellipsoid::sphere(kRadius_m), 0.0, 10 * slant.scale_m),
+      Lattice(std::vector<SplitMask>(5, kSplitZ)),
+      [&](const glm::dvec3& p) {
+        return planted * per_m * std::exp((kRadius_m - glm::length(p)) / slant.scale_m);
+      },
+      hg(0));
   const PathMedium& air = medium.tracer().medium();
   const glm::dvec3 up = glm::normalize(glm::dvec3{1, 0.97, -0.2});  // near an edge of the cube
   const glm::dvec3 level = glm::normalize(glm::cross(up, glm::dvec3{0.3, 0.1, 1}));

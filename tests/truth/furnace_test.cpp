@@ -19,11 +19,11 @@ void PrintTo(const Furnace& furnace, std::ostream* out) {
 void add_cloud(Medium& medium, const Furnace& furnace, const Phase& phase) {
   std::shared_ptr<const Chart> chart = std::make_shared<BoxChart>(
       glm::dvec3{-500}, glm::dmat3(1000.0), Periodic{furnace.periodic, furnace.periodic});
-  if (furnace.shell)
-    chart = std::make_shared<ShellChart>(Ellipsoid::sphere(500), -400.0, 0.0);
+  if (furnace.shell) chart = std::make_shared<ShellChart>(Ellipsoid::sphere(500), -400.0, 0.0);
   for (int v = 0; v < furnace.volumes; ++v)
-    medium.add(chart, isotropic(2),
-               [&](const glm::dvec3& p) { return 3 * cloud(p / 200.0 + double(v)) + 3e-4; }, phase);
+    medium.add(
+        chart, isotropic(2),
+        [&](const glm::dvec3& p) { return 3 * cloud(p / 200.0 + double(v)) + 3e-4; }, phase);
   medium.request.sky.zenith_W_per_m2_sr_nm = medium.request.sky.horizon_W_per_m2_sr_nm =
       medium.request.sky.below_W_per_m2_sr_nm = glm::dvec3{1.0};
 }
@@ -43,8 +43,7 @@ TEST_P(Furnaces, AreWhiteOnEachPath) {
   const auto means = measure<2>(1, 20000, [&](Random& random) {
     const PathSample path = tracer.sample(inward(random), random);
     double off = 0;
-    for (int c = 0; c < 3; ++c)
-      off = std::max(off, std::abs(path.radiance_W_per_m2_sr_nm[c] - 1));
+    for (int c = 0; c < 3; ++c) off = std::max(off, std::abs(path.radiance_W_per_m2_sr_nm[c] - 1));
     return std::array{off < 1e-12 ? 0.0 : 1.0, double(path.scatterings)};
   });
   EXPECT_EQ(means[0].mean(), 0);

@@ -40,9 +40,8 @@ std::vector<Compared> run(const HalfSpace& space, double co_albedo_more = 0) {
   const double exact = space.ssa / (4 * std::numbers::pi) * space.mu_sun /
                        (space.mu + space.mu_sun) * h_function(space.column, space.mu) * h_sun;
   const Ray down{{50, 50, kSlab_m + 1}, -view.to_sun()};
-  const auto ours = measure_to<1>(1, [&](Random& random) {
-    return std::array{double(!walk(tracer, down, random).absorbed)};
-  });
+  const auto ours = measure_to<1>(
+      1, [&](Random& random) { return std::array{double(!walk(tracer, down, random).absorbed)}; });
   return {{"radiance", slab_radiance(tracer, view, Seen::kFromAbove), {exact}},
           {"plane albedo", ours[0], {1 - std::sqrt(1 - space.ssa) * h_sun}}};
 }
@@ -58,15 +57,14 @@ TEST(HalfSpaceBias, OfAlbedoIsCaught) {
   expect_caught("half-space ssa_9", run(kSpaces[1], kBias));
 }
 
-// Without absorption a slab lets sqrt(3) H(mu0) / (3 tau + 6 q) through, and reflects the rest; 1e-5
-// off at this depth. q is Hopf's.
+// Without absorption a slab lets sqrt(3) H(mu0) / (3 tau + 6 q) through, and reflects the rest;
+// 1e-5 off at this depth. q is Hopf's.
 TEST(HalfSpaces, WithoutAbsorptionKeepWhatGoesThrough) {
   constexpr double hopf = 0.7104460895, depth = 10, mu_sun = 0.6;
   Medium medium;
   add_slab(medium, Profile::kEven, depth, hg(0), 0);
   const PathTracer& tracer = medium.tracer();
-  const double through =
-      std::sqrt(3) * h_function("H_w1", mu_sun) / (3 * depth + 6 * hopf);
+  const double through = std::sqrt(3) * h_function("H_w1", mu_sun) / (3 * depth + 6 * hopf);
   const Ray down{{50, 50, kSlab_m + 1}, {0.8, 0, -mu_sun}};
   const auto ours = measure_to<2>(1, [&](Random& random) {
     const bool up = walk(tracer, down, random).ray.direction.z > 0;

@@ -39,7 +39,8 @@ class MieSlabs : public testing::TestWithParam<int> {};
 TEST_P(MieSlabs, PassOnTheFluxOfTheTable) {
   expect_agreement("Mie slab, tau " + std::to_string(GetParam()), fluxes(GetParam()));
 }
-INSTANTIATE_TEST_SUITE_P(Truth, MieSlabs, testing::Values(4, 8, 16), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Truth, MieSlabs, testing::Values(4, 8, 16),
+                         testing::PrintToStringParamName());
 
 TEST(MieSlabBias, OfExtinctionIsCaught) {
   expect_caught("Mie slab, tau 4", fluxes(4, 1 + kBias));

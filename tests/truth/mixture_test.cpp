@@ -89,12 +89,15 @@ TEST(Mixture, OfVolumesHasTheProductOfTransmittances) {
   add_slab(medium, Profile::kTent, 0.4, hg(0), 0);
   add_slab(medium, Profile::kEven, 0.3, hg(0), 0);
   const PathMedium& both = medium.tracer().medium();
-  const auto ours = measure_to<2>(1, [&](Random& random) {
-    return std::array{both.transmittance({{5, 5, 101}, {0, 0, -1}}, kNoDistance_m, random),
-                      both.transmittance({{5, 5, 101}, kDown}, kNoDistance_m, random)};
-  }, kPrecision / 2);
-  expect_agreement("transmittance through two volumes", {{"upright", ours[0], {std::exp(-0.7)}},
-                                                         {"aslant", ours[1], {std::exp(-1.4)}}});
+  const auto ours = measure_to<2>(
+      1,
+      [&](Random& random) {
+        return std::array{both.transmittance({{5, 5, 101}, {0, 0, -1}}, kNoDistance_m, random),
+                          both.transmittance({{5, 5, 101}, kDown}, kNoDistance_m, random)};
+      },
+      kPrecision / 2);
+  expect_agreement("transmittance through two volumes",
+                   {{"upright", ours[0], {std::exp(-0.7)}}, {"aslant", ours[1], {std::exp(-1.4)}}});
 }
 
 // A slab about a sphere of 1e8 m, over one of its cube's corners: three faces meet there.
@@ -102,13 +105,14 @@ std::vector<Compared> shell_slab(double planted = 1) {
   constexpr double radius_m = 1e8;
   const auto chart = std::make_shared<ShellChart>(Ellipsoid::sphere(radius_m), 0.0, kSlab_m);
   Medium medium;
-  medium.add(chart, Lattice({kSplitZ}),
-             [&](const glm::dvec3& p) {
-               const double height = (glm::length(p) - radius_m) / kSlab_m;
-               const double share = std::max(0.0, 1 - std::abs(2 * height - 1));
-               return planted * 2 * kDepth / kSlab_m * share;
-             },
-             hg(0.85));
+  medium.add(
+      chart, Lattice({kSplitZ}),
+      [&](const glm::dvec3& p) {
+        const double height = (glm::length(p) - radius_m) / kSlab_m;
+        const double share = std::max(0.0, 1 - std::abs(2 * height - 1));
+        return planted * 2 * kDepth / kSlab_m * share;
+      },
+      hg(0.85));
   Ground ground;
   ground.add(*chart);
   const PathTracer& tracer = medium.tracer();

@@ -73,11 +73,12 @@ std::vector<Compared> run(const Box& box, double planted = 1) {
   Medium medium;
   const auto chart = std::make_shared<BoxChart>(glm::dvec3{0.0}, box.edges_m);
   for (int v = 0; v < box.volumes; ++v)
-    medium.add(chart, isotropic(kLevels),
-               [&](const glm::dvec3& p) {
-                 return planted * box.field(glm::inverse(box.edges_m) * p) / box.volumes;
-               },
-               hg(box.g));
+    medium.add(
+        chart, isotropic(kLevels),
+        [&](const glm::dvec3& p) {
+          return planted * box.field(glm::inverse(box.edges_m) * p) / box.volumes;
+        },
+        hg(box.g));
   const PathTracer& tracer = medium.tracer();
   std::array<double, 3> areas_m2;
   for (int a = 0; a < 3; ++a)
@@ -119,12 +120,10 @@ TEST_P(Boxes, ScatterByTheIntegralOfTheirField) {
 const glm::dmat3 kCube{1000.0};
 const glm::dmat3 kSheared{glm::dvec3{1200, 100, -200}, glm::dvec3{-300, 900, 0},
                           glm::dvec3{150, 250, 700}};
-const std::vector<Box> kBoxes{{"of_clouds", kCube, 0.85, 1, clouds},
-                              {"of_clouds_backward", kCube, -0.7, 1, clouds},
-                              {"of_blobs_peaked", kCube, 0.9999, 1, blobs},
-                              {"sheared", kSheared, 0.5, 1, clouds},
-                              {"of_voxels", kCube, 0.85, 1, voxel_ball},
-                              {"of_two_volumes", kSheared, 0.85, 2, clouds}};
+const std::vector<Box> kBoxes{
+    {"of_clouds", kCube, 0.85, 1, clouds},        {"of_clouds_backward", kCube, -0.7, 1, clouds},
+    {"of_blobs_peaked", kCube, 0.9999, 1, blobs}, {"sheared", kSheared, 0.5, 1, clouds},
+    {"of_voxels", kCube, 0.85, 1, voxel_ball},    {"of_two_volumes", kSheared, 0.85, 2, clouds}};
 INSTANTIATE_TEST_SUITE_P(Truth, Boxes, testing::ValuesIn(kBoxes),
                          [](const auto& with) { return with.param.name; });
 

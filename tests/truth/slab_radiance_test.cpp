@@ -11,7 +11,7 @@ struct Case {
   double g, ssa, depth;
   SlabRow view;
   Profile profile;
-  bool up = true, down = false;   // at the top, and at the base
+  bool up = true, down = false;  // at the top, and at the base
   double sun_radius_rad = 0;
 };
 void PrintTo(const Case& slab, std::ostream* out) {

@@ -10,9 +10,8 @@ enum class Seen { kFromAbove, kFromBelow };
 
 inline Estimate slab_radiance(const PathTracer& tracer, const SlabRow& view, Seen seen,
                               int colour = 1) {
-  const Ray ray = seen == Seen::kFromAbove
-                      ? Ray{{50, 50, kSlab_m + 1}, view.from_above()}
-                      : Ray{{50, 50, -1}, view.from_below()};
+  const Ray ray = seen == Seen::kFromAbove ? Ray{{50, 50, kSlab_m + 1}, view.from_above()}
+                                           : Ray{{50, 50, -1}, view.from_below()};
   const auto path = [&](Random& random) {
     return std::array{tracer.sample(ray, random).radiance_W_per_m2_sr_nm[colour]};
   };

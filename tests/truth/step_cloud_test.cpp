@@ -141,9 +141,8 @@ TEST_P(StepClouds, PassOnTheFluxOfTheTable) {
   const Columns up = truth(GetParam(), "R"), down = truth(GetParam(), "T");
   EXPECT_GT(z_per_pixel(reflected.columns, up).p, kAccept);
   EXPECT_GT(z_per_pixel(transmitted.columns, down).p, kAccept);
-  expect_agreement(
-      "step cloud " + GetParam().name,
-      {{"R", reflected.mean, mean_of(up)}, {"T", transmitted.mean, mean_of(down)}});
+  expect_agreement("step cloud " + GetParam().name,
+                   {{"R", reflected.mean, mean_of(up)}, {"T", transmitted.mean, mean_of(down)}});
 }
 INSTANTIATE_TEST_SUITE_P(Truth, StepClouds, testing::ValuesIn(kSkies),
                          [](const auto& with) { return with.param.name; });
@@ -158,8 +157,8 @@ TEST(StepCloudNadir, RadiancesAreThoseOfTheTable) {
     EXPECT_GT(z_per_pixel(by_fours(ours.columns), by_fours(exact)).p, kAccept) << sky.name;
     const Estimate all = mean_of(exact);
     mean.value += ours.mean.value / all.value / double(kSkies.size());
-    mean.standard_error = std::hypot(mean.standard_error, ours.mean.standard_error / all.value /
-                                                              double(kSkies.size()));
+    mean.standard_error = std::hypot(mean.standard_error,
+                                     ours.mean.standard_error / all.value / double(kSkies.size()));
   }
   expect_agreement("step cloud", {{"nadir radiance, over truth's", mean, {1, 5e-4}}});
 }

@@ -103,8 +103,8 @@ class Medium {
   std::unique_ptr<PathTracer> tracer_;
 };
 
-// A history that begins at a light: until it is absorbed or leaves. reach(ray) is how far the medium
-// goes, at most.
+// A history that begins at a light: until it is absorbed or leaves. reach(ray) is how far the
+// medium goes, at most.
 struct Escape {
   Ray ray;  // from the last collision
   int scatterings = 0;
@@ -125,14 +125,15 @@ Escape walk(const PathTracer& tracer, const Ray& ray, Random& random, Reach&& re
   }
 }
 inline Escape walk(const PathTracer& tracer, const Ray& ray, Random& random, int wavelength = 1) {
-  return walk(tracer, ray, random, [](const Ray&) { return kNoDistance_m; }, wavelength);
+  return walk(
+      tracer, ray, random, [](const Ray&) { return kNoDistance_m; }, wavelength);
 }
 
 // By the cosine law into the half-space around a unit normal.
 glm::dvec3 cosine_law(const glm::dvec3& normal, Random& random);
 
-// A slab between z = 0 and 100 m without end, as a periodic box: even, or a tent of the same optical
-// depth, which takes null collisions.
+// A slab between z = 0 and 100 m without end, as a periodic box: even, or a tent of the same
+// optical depth, which takes null collisions.
 inline constexpr double kSlab_m = 100;
 enum class Profile { kEven, kTent };
 void add_slab(Medium& medium, Profile profile, double optical_depth, const Phase& phase,
