@@ -88,6 +88,17 @@ struct Planet {
 enum class Fetch : std::uint8_t { kFilter, kTexels8 };
 enum class Light : std::uint8_t { kSingle, kOctaves };
 enum class ToneMap : std::uint8_t { kNone, kAces };
+// What draws: the march on the GPU, or the path tracer that it is measured against.
+enum class Engine : std::uint8_t { kMarch, kReference };
+enum class PathLevels : std::uint8_t { kFinest, kResident };
+
+struct PathGoals {
+  int samples = 0;   // paths a pixel; 0: as many as `noise` needs
+  double noise = 0;  // rms of the pixels' standard errors over mean luminance; 0: by `samples`
+  PathLevels levels = PathLevels::kFinest;  // or the bricks that the march would have
+  double host_mib = 4096;                   // memory for the finest
+  int exact_orders = 2;  // scatterings with a tabled phase function (PathSettings); -1: all
+};
 
 struct RenderSettings {
   int width = 640, height = 360;
@@ -103,6 +114,8 @@ struct RenderSettings {
   int max_level = 31;           // and at this level
   std::uint64_t seed = 1;
   int probe_pixels = 128;  // pixels on which the error line is measured; 0 = none
+  Engine engine = Engine::kMarch;
+  PathGoals paths;  // of Engine::kReference; neither goal given: 5 % of noise
 };
 
 // What a view of a planet's weather is worked out to be; kAuto: a part obliquely, or the globe.

@@ -26,8 +26,12 @@ version_and_help() {
   nephoscope render --help >r.txt
   for option in size look-from look-at fov sun budget-mib step tolerance fetch seed frame fps \
     density-scale up metres-per-unit grid light exposure explain at heading pitch view time \
-    no-planet force; do
+    no-planet force engine spp noise levels host-mib exact-orders; do
     has r.txt "^ *(-o,)?--$option"
+  done
+  nephoscope compare --help >c.txt
+  for option in diff diff-of diff-scale exposure tone-map pixels-per-degree json; do
+    has c.txt "^ *--$option "
   done
 }
 
@@ -135,6 +139,14 @@ END
   has a.txt '^assumed: sun: 35 degrees high to the side, --sun [0-9.]+,[0-9.]+ \(the data have no date\)$'
   nephoscope render in/a.ppm -o in/b.ppm >/dev/null
   nephoscope compare in/a.ppm in/b.ppm >same.txt && has same.txt 'bit for bit'
+  # In linear light, too, and shown the same way: white is that of the sun outside the air.
+  linear=in/b.exr  # where this build writes it: then with optical depth
+  nephoscope render in/a.ppm -o $linear >/dev/null 2>&1 || {
+    linear=in/b.pfm
+    nephoscope render in/a.ppm -o $linear >/dev/null
+  }
+  nephoscope compare $linear in/a.ppm >same.txt && has same.txt '^RMSE of 8-bit RGB: 0$'
+  nephoscope compare $linear $linear >same.txt && has same.txt '^rms of .* \(over all pixels\)$'
   nephoscope render in/s.json --view globe --sun 2005-06-21T11:00Z -o in/c.ppm >c.txt
   has c.txt '^assumed: view: the globe'
   nephoscope render in/c.ppm -o in/d.ppm >/dev/null
@@ -168,6 +180,28 @@ ctrl_c_leaves_nothing() {
   [ "$(ls -A in)" = s.json ] || { ls -A in; fail "left something behind"; }
 }
 
+# Paths: repeated bit for bit on any number of threads, to a goal, and Ctrl-C keeps what is done.
+reference_is_drawn() {
+  sphere in/s.json
+  nephoscope render in/s.json --engine reference --spp 6 -o a.pfm >a.txt
+  has a.txt '^error \(measured\): noise [0-9.e+]+ % .*, 6 paths a pixel; finest bricks\)$'
+  taskset -c 0 nephoscope render in/s.json --engine reference --spp 6 -o b.pfm >/dev/null
+  cmp a.pfm b.pfm || fail "another number of threads, another picture"
+  nephoscope render a.pfm -o c.pfm >/dev/null && nephoscope compare a.pfm c.pfm >c.txt
+  has c.txt "same pixels, bit for bit"
+  nephoscope render in/s.json --engine reference --noise 60% --levels resident -o d.ppm >d.txt
+  awk '/noise/ { sub(/.*noise /, ""); exit !($1 > 0 && $1 <= 60) }' d.txt || { cat d.txt; fail "noise"; }
+  nephoscope render in/s.json --spp 4 -o e.ppm 2>e.txt && fail "--spp without paths"
+  has e.txt 'error: --spp: nothing to apply it to'
+  nephoscope render in/s.json --size 64x64 --engine reference --spp 1000000 -o f.pfm >f.txt &
+  pid=$!
+  sleep 2
+  kill -INT $pid
+  wait $pid || fail "Ctrl-C lost the picture"
+  has f.txt 'stopped early'
+  [ -s f.pfm ] || fail "no picture after Ctrl-C"
+}
+
 compare_measures() {
   sphere in/s.json
   nephoscope render in/s.json --probe-pixels 0 --exposure 0 -o a.pfm >/dev/null
@@ -177,6 +211,55 @@ compare_measures() {
   has c.txt '^relative MSE: [0-9.e-]+$'
   rms=$(sed -n 's/^rms.*: \([0-9.e-]*\) %.*/\1/p' c.txt)
   awk -v rms="$rms" 'BEGIN { exit !(rms > 0 && rms < 3) }' || { cat c.txt; fail "rms of $rms %"; }
+}
+
+grey() { printf 'P6\n2 1\n255\n%b' "\\0$2\\0$2\\0$2\\0$2\\0$2\\0$2" >"$1"; }  # grey FILE OCTAL
+
+compare_shows_both_alike() {
+  # Closed forms: ten levels apart are 28.1308 dB, and the maps have the size of the pictures.
+  grey a.ppm 156 && grey b.ppm 144
+  nephoscope compare a.ppm b.ppm >c.txt
+  has c.txt '^RMSE of 8-bit RGB: 10$'
+  has c.txt '^PSNR of 8-bit RGB: 28\.1308 dB$'
+  has c.txt '^bias of luminance: \+[0-9.]+ %$'
+  nephoscope compare b.ppm a.ppm >c.txt && has c.txt '^bias of luminance: -[0-9.]+ %$'
+  nephoscope compare a.ppm a.ppm >c.txt
+  has c.txt '^PSNR of 8-bit RGB: inf dB$' && has c.txt '^FLIP: mean 0, largest 0 '
+  # A linear picture is shown as the truth's scene says, which is how render showed it.
+  sphere in/s.json '"dither": "ordered"'
+  nephoscope render in/s.json --probe-pixels 0 --exposure 0.5 -o a.pfm >/dev/null
+  nephoscope render a.pfm -o b.ppm >/dev/null
+  nephoscope compare a.pfm b.ppm >c.txt
+  has c.txt "^shown at \+0\.50 EV, tone map aces, dithered \(the 8-bit picture's scene\)$"
+  has c.txt '^RMSE of 8-bit RGB: 0$' && has c.txt '^same pixels as shown in 8 bits$'
+  nephoscope compare b.ppm a.pfm --tone-map none --exposure 3 >c.txt
+  has c.txt '^shown at \+3\.00 EV, tone map none' && has c.txt '^not the same pixels$'
+  nephoscope compare a.pfm a.pfm >c.txt && has c.txt "^shown at \+0\.50 EV, .*\(B's scene\)$"
+  # Pictures that say nothing are shown as render would show them.
+  head -c $((32 * 18 * 12 + 14)) a.pfm >bare.pfm
+  nephoscope compare bare.pfm bare.pfm >c.txt && has c.txt '^shown at [+-][0-9.]+ EV, .*found for B'
+  nephoscope render a.pfm --exposure 1 -o d.ppm >/dev/null
+  nephoscope compare b.ppm d.ppm >c.txt && has c.txt '^note: A and B were shown differently: \+0\.50'
+}
+
+compare_maps_differences() {
+  sphere in/s.json
+  nephoscope render in/s.json --probe-pixels 0 --exposure 0 -o a.pfm >/dev/null
+  nephoscope render in/s.json --probe-pixels 0 --exposure 0 --light single -o b.pfm >/dev/null
+  nephoscope compare b.pfm a.pfm --diff d.ppm >c.txt && has c.txt '^d\.ppm: FLIP from 0 .* to 1 '
+  nephoscope compare b.pfm a.pfm --diff l.ppm --diff-of luminance >c.txt
+  has c.txt '^l\.ppm: relative difference of luminance from -[0-9]+ % \(blue\) .* \+[0-9]+ % \(red\)$'
+  nephoscope compare d.ppm l.ppm >c.txt && has c.txt '^not the same pixels'
+  # The numbers themselves: their mean is the one that is printed.
+  nephoscope compare b.pfm a.pfm --diff d.pfm --json >c.json
+  has c.json '"file": "d.pfm"' && has c.json '"psnr_db": [0-9.]+' && has c.json '"light": "linear"'
+  printed=$(sed -n 's/^ *"mean": \([0-9.e-]*\),*/\1/p' c.json)
+  measured=$(tail -c +15 d.pfm | head -c $((32 * 18 * 12)) | od -An -v -tf4 |
+    awk '{ for (i = 1; i <= NF; i++) { sum += $i; n++ } } END { print sum / n }')
+  awk -v a="$printed" -v b="$measured" 'BEGIN { exit !(a > 0.001 && (a - b) ^ 2 < 1e-8 * a * a) }' ||
+    fail "map of mean $measured, printed $printed"
+  nephoscope compare b.pfm a.pfm --pixels-per-degree 20 --json >n.json
+  if cmp -s c.json n.json; then fail "the distance of the eye changes nothing"; fi
 }
 
 "$claim"

@@ -4,8 +4,8 @@
 
 #include "accuracy_report.h"
 #include "air.h"
+#include "cf_twin.h"
 #include "conventions/horizontal.h"
-#include "twins.h"
 
 namespace nepho::netcdf::test {
 using nepho::test::report_accuracy;

@@ -1,9 +1,19 @@
 // What is refused: one clear message each, within 5 s, and nothing else on the streams.
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <glm/glm.hpp>
+#include <random>
+#include <stdexcept>
 
-#include "twins.h"
+#include "cf_twin.h"
+#include "survives.h"
+#include "wrf_twin.h"
 
 namespace nepho::netcdf::test {
 namespace {
@@ -108,10 +118,57 @@ TEST(Malformed, TooMuchWater) {
   EXPECT_NO_THROW(open(path, true));
 }
 
+// A variable beside `like`, or `like` itself, with one value everywhere.
+void put_everywhere(const std::string& path, const char* name, const char* like, double value,
+                    const std::string& units) {
+  int file = 0, variable = 0, rank = 0, dimensions[NC_MAX_VAR_DIMS];
+  ASSERT_EQ(nc_open(path.c_str(), NC_WRITE, &file), NC_NOERR);
+  nc_inq_varid(file, like, &variable);
+  nc_inq_var(file, variable, nullptr, nullptr, &rank, dimensions, nullptr);
+  if (std::string(name) != like) {
+    ASSERT_EQ(nc_def_var(file, name, NC_FLOAT, rank, dimensions, &variable), NC_NOERR);
+    nc_put_att_text(file, variable, "units", units.size(), units.data());
+  }
+  std::size_t total = 1, length = 0;
+  for (int d = 0; d < rank; ++d, total *= length) nc_inq_dimlen(file, dimensions[d], &length);
+  const std::vector<double> values(total, value);
+  ASSERT_EQ(nc_put_var_double(file, variable, values.data()), NC_NOERR);
+  nc_close(file);
+}
+
+TEST(Malformed, TooThick) {
+  CfTwin twin;
+  twin.water_scale = 40;  // 16 g/m3 at most
+  const std::string path = twin.write("thick");
+  EXPECT_EQ(refusal(path), "");
+  put_everywhere(path, "qnc", "clw", 1e12, "m-3");  // in droplets of 4 um
+  refused(path, {"extinction is higher", "1 /m", "--force"});
+  EXPECT_NO_THROW(open(path, true));
+}
+
+TEST(Malformed, AirOfNoCloud) {
+  const std::string path = CfTwin().write("celsius");
+  put_everywhere(path, "t", "t", -20, "");  // degC under the name of K
+  refused(path, {"as cold or as warm", "100 to 400 K", "-20 K"});
+  EXPECT_THROW(open(path, true), Error);  // no density to draw with
+  put_everywhere(path, "t", "t", 5000, "");
+  refused(path, {"as cold or as warm", "5000 K"});
+  put_everywhere(path, "t", "t", 250, "");
+  EXPECT_EQ(refusal(path), "");
+}
+
+TEST(Malformed, LayersInNoAtmosphere) {
+  WrfTwin twin;
+  const std::string path = twin.write("high");
+  put_everywhere(path, "PH", "PH", 3e7, "");
+  refused(path, {"in no atmosphere", "-15000 to 1000000 m"});
+}
+
 TEST(Malformed, Levels) {
   CfTwin twin;
   twin.pressure_hPa = {1000, 700, 900, 500};
-  refused(twin.write("levels"), {"[level]", "neither rise nor fall", "100000, 70000, 90000, 50000"});
+  refused(twin.write("levels"),
+          {"[level]", "neither rise nor fall", "100000, 70000, 90000, 50000"});
   twin.pressure_hPa = {1000, 1000, 900, 500};
   refused(twin.write("twice"), {"[level]", "neither rise nor fall"});
 }
@@ -147,6 +204,108 @@ TEST(Malformed, NoHorizontalGrid) {
           {"triangular grids are not read yet"});
   refused(write_flat("no_axes", {"lev", "y", "x"}), {"no coordinates"});
   refused(write_flat("members", {"number", "lev", "lat", "lon"}), {"dimension too many"});
+}
+
+TEST(Malformed, SurvivesTellsTheEndOfACopy) {
+  EXPECT_TRUE(survives([] {}));
+  EXPECT_TRUE(survives([] { throw std::runtime_error("met again here"); }));
+  testing::internal::CaptureStderr();
+  EXPECT_FALSE(survives([] { std::abort(); }));
+  EXPECT_FALSE(survives([] {
+    std::fputs("last words\n", stderr);
+    std::raise(SIGSEGV);
+  }));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// Headers with a few bytes changed: opened or refused, never the end of this process, and nothing
+// on its streams.
+TEST(Malformed, FlippedHeaders) {
+  std::mt19937 random(20);
+  int opened = 0, refusals = 0, broken_down = 0;
+  for (const bool wrf : {true, false})
+    for (const int format : {NC_NETCDF4, NC_NETCDF4 | NC_CLASSIC_MODEL, 0}) {
+      if (wrf && format != NC_NETCDF4) continue;
+      CfTwin twin;
+      twin.format = format;
+      const std::string whole = bytes_of(wrf ? WrfTwin().write("flip") : twin.write("flip"));
+      for (int n = 0; n < (wrf ? 150 : 100); ++n) {
+        std::string bytes = whole;
+        for (auto flips = 1 + random() % 6; flips > 0; --flips)
+          bytes[random() % std::min<std::size_t>(bytes.size(), 12000)] = char(random());
+        const std::string path = write_bytes("flipped.nc", bytes);
+        testing::internal::CaptureStderr();
+        const std::string text = refusal(path);
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+        (text.empty() ? opened : refusals) += 1;
+        broken_down += text.find("breaks down") != std::string::npos;
+      }
+    }
+  std::printf("measured: %d opened, %d refused, of these %d for HDF5's sake\n", opened, refusals,
+              broken_down);
+  EXPECT_GT(opened, 20);
+  EXPECT_GT(refusals, 100);
+}
+
+TEST(Malformed, MissingHeights) {
+  const std::string wrf = WrfTwin().write("no_ph");
+  put_everywhere(wrf, "PH", "PH", NAN, "");
+  refused(wrf, {"[PH, PHB]", "neither rise nor fall", "or missing"});
+  const std::string cf = CfTwin().write("no_gh");
+  put_everywhere(cf, "gh", "gh", NAN, "");
+  refused(cf, {"[gh]", "neither rise nor fall", "missing values only"});
+}
+
+// Latitudes in no order: cells that turn both ways.
+TEST(Malformed, PlacesWithoutOrder) {
+  WrfTwin twin;
+  twin.nx = twin.ny = 12;
+  const std::string path = twin.write("scrambled");
+  int file = 0, variable = 0;
+  nc_open(path.c_str(), NC_WRITE, &file);
+  nc_inq_varid(file, "XLAT", &variable);
+  std::vector<double> values(2u * 12 * 12);
+  std::mt19937 random(3);
+  for (double& value : values) value = double(random() % 60);
+  nc_put_var_double(file, variable, values.data());
+  nc_close(file);
+  refused(path, {"[XLAT, XLONG]", "turn to the other"});
+}
+
+// Idealised runs: every cell at 0 N 0 E.
+TEST(Malformed, OnePlaceForAllCells) {
+  WrfTwin twin;
+  const std::string path = twin.write("one_place");
+  put_everywhere(path, "XLAT", "XLAT", 0, "");
+  put_everywhere(path, "XLONG", "XLONG", 0, "");
+  twin.with_xlat = false;
+  const auto map = open(twin.write("no_place"))->grid(0), by_map = open(path)->grid(0);
+  for (const double x : {0.0, 2.5, 6.0})
+    EXPECT_LT(glm::length(map->lat_lon_deg(x, 1) - by_map->lat_lon_deg(x, 1)), 1e-12);
+  int file = 0;
+  const double none = 0;
+  ASSERT_EQ(nc_open(path.c_str(), NC_WRITE, &file), NC_NOERR);
+  ASSERT_EQ(nc_put_att_double(file, NC_GLOBAL, "MAP_PROJ", NC_INT, 1, &none), NC_NOERR);
+  nc_close(file);
+  const auto plane = open(path);
+  const glm::dvec2 west = plane->grid(0)->lat_lon_deg(0, 2.5),
+                   east = plane->grid(0)->lat_lon_deg(6, 2.5);
+  const double metre_deg = 360 / (2 * M_PI * 6378137.0);
+  EXPECT_NEAR(west.y, -3 * twin.dx_m * metre_deg, 1e-5);
+  EXPECT_NEAR(east.y, 3 * twin.dx_m * metre_deg, 1e-5);
+  EXPECT_NEAR(east.x, 0, 1e-9);
+  const auto said = plane->assumptions();
+  EXPECT_TRUE(std::ranges::any_of(
+      said, [](const std::string& text) { return text.find("0 N 0 E") != std::string::npos; }));
+}
+
+TEST(Malformed, GroundOfFillValuesIsSea) {
+  const std::string path = WrfTwin().write("ground");
+  put_everywhere(path, "HGT", "HGT", 1e20, "");
+  put_everywhere(path, "LANDMASK", "LANDMASK", -9999, "");
+  const ForecastGround ground = open(path)->ground(0);
+  EXPECT_EQ(ground.height_m, std::vector<float>(30, 0.0f));
+  EXPECT_EQ(ground.water, std::vector<float>(30, 1.0f));
 }
 
 TEST(Malformed, WrfWithoutItsAir) {

@@ -91,10 +91,12 @@ class NcWriter {
   std::map<std::string, int> dimensions_;
 };
 
-inline std::unique_ptr<Forecast> open(const std::string& path, bool force = false) {
+inline std::unique_ptr<Forecast> open(const std::string& path, bool force = false,
+                                      std::optional<Region> region = {}) {
   OpenRequest request;
   request.files = {path};
   request.force = force;
+  request.region = region;
   return open_forecast(request);
 }
 

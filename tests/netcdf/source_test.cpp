@@ -149,9 +149,23 @@ TEST(NetcdfSource, RefusesUnknownParameters) {
     EXPECT_THROW(made_source(forecast, {parameter}), Error) << parameter.name;
   };
   refused({"vertical_resolutoin", nullptr, 100, "m"});
-  refused({"vertical_resolution", nullptr, -5, "m"});
-  refused({"horizontal_resolution", nullptr, 0, "m"});
-  refused({"clear_below", nullptr, 1, "m-1"});
+  refused({"vertical_resolution_m", nullptr, -5, "m"});
+  refused({"horizontal_resolution_m", nullptr, 0, "m"});
+  refused({"clear_below_per_m", nullptr, 1, "m-1"});
+  refused({"vertical_resolution", nullptr, 100, "m"});  // the host's names end in their SI unit
+}
+
+TEST(NetcdfSource, ObeysItsResolutions) {
+  const auto forecast = synthetic_forecast("mercator");
+  const auto source = made_source(forecast, {{"vertical_resolution_m", nullptr, 120, "m"},
+                                             {"horizontal_resolution_m", nullptr, 4000, "m"},
+                                             {"clear_below_per_m", nullptr, 1e-5, "m-1"}});
+  const VolumeInfo& info = source->info();
+  const Index3& cells = info.lattice.cells(info.lattice.max_level());
+  const auto& shell = dynamic_cast<const ShellChart&>(*info.chart);
+  EXPECT_LE(shell.thickness_m() / cells[2], 120);
+  EXPECT_GT(shell.thickness_m() / cells[2], 60 * 0.99);
+  EXPECT_EQ(cells[0], 4096u);  // 10 019 km of 4 km at most: 2.4 km
 }
 
 // The file's own piecewise constant field at random places of random cells.

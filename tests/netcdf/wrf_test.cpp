@@ -4,7 +4,7 @@
 
 #include "accuracy_report.h"
 #include "air.h"
-#include "twins.h"
+#include "wrf_twin.h"
 
 namespace nepho::netcdf::test {
 using nepho::test::report_accuracy;
@@ -36,6 +36,14 @@ TEST(Wrf, GridMovesWithTheNest) {
   }
   EXPECT_LT(worst, 1e-5);  // XLAT is a float
   EXPECT_NE(facts_of(*f).find("agree with the map"), std::string::npos) << facts_of(*f);
+}
+
+TEST(Wrf, HeightsAreSaidToBeOverTheEllipsoid) {
+  const auto said = open(WrfTwin().write("geoid"))->assumptions();
+  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& text) {
+    return text.find("above the ellipsoid") != std::string::npos &&
+           text.find("107 m below to 86 m above") != std::string::npos;
+  }));
 }
 
 TEST(Wrf, MapAloneIsTheSameGrid) {

@@ -79,11 +79,12 @@ inline Phase hg(double g) {
   return {.kind = PhaseKind::kHenyeyGreenstein, .asymmetry = g};
 }
 
-// Volumes and what is around them. The sun is a beam, unless its radius is set.
+// Volumes and what is around them. The sun is a beam, unless its radius is set, and
+// no phase function is smoothed.
 class Medium {
  public:
   RenderRequest request;
-  PathSettings settings{.sun_radius_rad = 0};
+  PathSettings settings{.sun_radius_rad = 0, .exact_orders = -1};
 
   Medium();
   RenderVolume& add(std::shared_ptr<const BrickSource> source, const Phase& phase,

@@ -13,19 +13,22 @@ struct RenderOptions {
   std::optional<std::string> size, look_from, look_at, fov_deg, sun, up, metres_per_unit, grid;
   std::optional<std::string> budget_mib, step_voxels, tolerance, fetch, light, seed, probe_pixels;
   std::optional<std::string> frame, fps, density_scale, exposure_ev, tone_map, max_level;
-  std::optional<std::string> at, heading_deg, pitch_deg, view, time;
+  std::optional<std::string> engine, spp, noise, levels, host_mib, exact_orders;
+  std::optional<std::string> at, heading_deg, pitch_deg, view, time, region;
   bool explain = false, dither = false, no_planet = false, force = false;
   bool explain_macros = false;  // hidden: what the tests of the shaders' text compile them with
 };
 
 struct InfoOptions {
   std::string input;
-  std::optional<std::string> grid, up, metres_per_unit, density_scale, frame, time;
+  std::optional<std::string> grid, up, metres_per_unit, density_scale, frame, time, region;
   bool json = false, check = false, force = false;
 };
 
 struct CompareOptions {
   std::string a, b;
+  std::optional<std::string> diff, diff_of, diff_scale, exposure_ev, tone_map, pixels_per_degree;
+  bool json = false;
 };
 
 // Each throws Error for what a user can cause, and prints its result on standard output.

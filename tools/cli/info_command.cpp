@@ -226,6 +226,7 @@ Scene scene_of(const InfoOptions& options, const PictureFiles& pictures) {
   set_parameter(scene, "density_scale", "--density-scale", options.density_scale);
   set_parameter(scene, "frame", "--frame", options.frame);
   set_force(scene, options.force);
+  set_region(scene, options.region);
   return scene;
 }
 

@@ -24,10 +24,15 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope render wrfout_d01.nc -o storm.png           place, time, view and sun are worked out
   nephoscope render wrfout_d01.nc --time 2005-08-28T15:00Z --view globe -o globe.png
   nephoscope render wrfout_d01.nc --at 29.9,-90.1 --heading 180 --pitch 12 -o street.png
+  nephoscope render gfs.nc --region 30,160,60,-150 -o pacific.png
   nephoscope render wrfout_d01.nc --sun 2005-08-28T23:00Z --no-planet -o evening.png
+  nephoscope render smoke.png --engine reference --noise 1% -o true.exr   the same, path traced
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
   nephoscope info wrfout_d01.nc --check                  and how well the bricks hold it
-  nephoscope compare a.exr b.exr                         how far two pictures are apart)";
+  nephoscope compare a.exr b.exr                         how far two pictures are apart
+  nephoscope compare a.exr b.exr --diff apart.png        and where (FLIP))";
+
+constexpr const char* kRegion = "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF)";
 
 void start_logging() {
   auto logger = spdlog::stderr_logger_mt("nephoscope");
@@ -107,6 +112,38 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
       ->group(group);
 }
 
+void add_reference_options(CLI::App& command, RenderOptions& o) {
+  const char* group = "Reference";
+  command
+      .add_option("--engine", o.engine,
+                  "march (the GPU), or reference: a path tracer on the CPU, slow and true")
+      ->group(group);
+  command.add_option("--spp", o.spp, "reference: paths a pixel")->group(group);
+  command.add_option("--noise", o.noise, "reference: go on to this noise, such as 1% (5%)")
+      ->group(group);
+  command
+      .add_option("--levels", o.levels, "reference: finest bricks, or resident (as the march has)")
+      ->group(group);
+  command
+      .add_option("--exact-orders", o.exact_orders,
+                  "reference: scatterings that keep a Mie phase function (2); -1 = all, noisy")
+      ->group(group);
+  command.add_option("--host-mib", o.host_mib, "reference: memory for the finest bricks (4096)")
+      ->group(group);
+}
+
+void add_compare_options(CLI::App& command, CompareOptions& o) {
+  command.add_option("--diff", o.diff, "picture of the differences; .exr, .hdr, .pfm: the numbers");
+  command.add_option("--diff-of", o.diff_of,
+                     "flip (what an eye sees) or luminance (with its sign)");
+  command.add_option("--diff-scale", o.diff_scale,
+                     "where its colours end (flip: 1; luminance: from the picture)");
+  command.add_option("--exposure", o.exposure_ev, "in stops (EV), of linear pictures as shown");
+  command.add_option("--tone-map", o.tone_map, "aces or none; otherwise as B's scene says");
+  command.add_option("--pixels-per-degree", o.pixels_per_degree, "of the eye, for FLIP (67)");
+  command.add_flag("--json", o.json, "for programs");
+}
+
 // A value given twice is a bad value; CLI11 calls it the same as a missing one.
 void refuse_repeated(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands())
@@ -128,11 +165,13 @@ int run(int argc, char** argv) {
   draw->add_option("-o,--output", render.output, "picture: .png .exr .hdr .pfm .ppm");
   draw->add_flag("--explain", render.explain, "what was loaded, allocated, run, and left out");
   add_quality_options(*draw, render);
+  add_reference_options(*draw, render);
   add_camera_options(*draw, render);
   add_data_options(*draw, render.grid, render.up, render.metres_per_unit, render.density_scale,
                    render.frame);
   draw->add_option("--fps", render.fps, "frames per second of a sequence (24)")->group("Data");
   draw->add_flag("--force", render.force, "draw values that no cloud has (NetCDF)")->group("Data");
+  draw->add_option("--region", render.region, kRegion)->group("Data");
   draw->add_flag("--explain-macros", render.explain_macros, "")->group("");
   draw->footer(kExamples);
   draw->callback([&] { render_command(render); });
@@ -144,6 +183,7 @@ int run(int argc, char** argv) {
   tell->add_flag("--check", info.check, "the source's own field against its finest bricks");
   tell->add_option("--time", info.time, "of the data: 2005-08-28T15:00Z, or seconds");
   tell->add_flag("--force", info.force, "take values that no cloud has (NetCDF)")->group("Data");
+  tell->add_option("--region", info.region, kRegion)->group("Data");
   add_data_options(*tell, info.grid, info.up, info.metres_per_unit, info.density_scale, info.frame);
   tell->callback([&] { info_command(info); });
 
@@ -152,6 +192,7 @@ int run(int argc, char** argv) {
       app.add_subcommand("compare", "how far picture A is from picture B, the truth");
   differ->add_option("A", compare.a, "picture")->required();
   differ->add_option("B", compare.b, "the truth")->required();
+  add_compare_options(*differ, compare);
   differ->callback([&] { compare_command(compare); });
 
   try {

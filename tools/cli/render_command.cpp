@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/reference_picture.h"
 #include "cli/report.h"
 #include "cli/scene_input.h"
 #include "common/gl_context.h"
@@ -94,13 +95,16 @@ void render_command(const RenderOptions& options) {
   libraries.format_known = mapped_libraries();
   // Before any work: what cannot be written later is known now.
   OutputFile file(output, largest_size(scene.render, format));
-  const auto context = make_egl_context();
+  const bool march = scene.render.engine == Engine::kMarch;
+  const auto context = march ? make_egl_context() : nullptr;
   libraries.device = mapped_libraries();
   OpenedScene opened = open_scene(host, scene);
   refuse_idle_options(options, scene, opened);
   libraries.scene_open = mapped_libraries();
 
-  const RenderResult result = render(opened.request);
+  const ReferencePicture drawn =
+      march ? ReferencePicture{render(opened.request), ""} : draw_reference(opened);
+  const RenderResult& result = drawn.result;
   const FloatImage linear = linear_image(result.image);
   const bool find_exposure = !opened.scene.exposure_ev;
   const bool planet = opened.scene.planet.has_value();
@@ -108,12 +112,12 @@ void render_command(const RenderOptions& options) {
     opened.scene.exposure_ev =
         planet ? exposure_on_planet(linear, result.image.optical_depth, white_in_the_sun(opened))
                : exposure_from(linear, result.image.optical_depth);
-  const glm::dvec3 white = planet ? opened.request.sun.irradiance_W_per_m2_nm : glm::dvec3(1);
+  const glm::dvec3 white = display_white(opened.scene);
   const ByteImage shown = is_linear(format)
                               ? ByteImage()
                               : to_display(linear, *opened.scene.exposure_ev, opened.scene.tone_map,
                                            opened.scene.dither, white);
-  const std::string error = error_line(result.error);
+  const std::string error = march ? error_line(result.error) : drawn.error_line;
   pictures.write(
       file.temporary(), format, shown, linear,
       {{"nephoscope:scene", write_scene(opened.scene, fs::absolute(output).parent_path())},
@@ -124,7 +128,9 @@ void render_command(const RenderOptions& options) {
   libraries.picture_written = mapped_libraries();
   print_result(output, opened, error, find_exposure);
   if (options.explain)
-    std::printf("%s", explanation(opened, result, context->description(), libraries).c_str());
+    std::printf(
+        "%s",
+        explanation(opened, result, context ? context->description() : "none", libraries).c_str());
   if (options.explain_macros)
     for (const std::string& macro : result.report.shader_switches)
       std::printf("macro: %s\n", macro.c_str());

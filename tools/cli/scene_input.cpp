@@ -157,11 +157,22 @@ void apply_light(Scene& scene, const RenderOptions& o) {
   if (o.sun) apply_sun(scene, *o.sun);
   if (o.exposure_ev)
     scene.exposure_ev = number_value("--exposure", *o.exposure_ev, "scene", "exposure_ev");
-  if (o.tone_map)
-    scene.tone_map = choice_value("--tone-map", *o.tone_map, "scene", "tone_map") == "none"
-                         ? ToneMap::kNone
-                         : ToneMap::kAces;
+  if (o.tone_map) scene.tone_map = tone_map_value(*o.tone_map);
   if (o.dither) scene.dither = true;
+}
+
+// For every volume with files, in place of what it has of this name.
+void lay_over(Scene& scene, const SourceParameter& parameter) {
+  bool used = false;
+  for (VolumeSpec& volume : scene.volumes) {
+    if (volume.files.empty()) continue;
+    used = true;
+    auto& all = volume.parameters;
+    std::erase_if(all, [&](const SourceParameter& p) { return p.name == parameter.name; });
+    all.push_back(parameter);
+  }
+  if (!used)
+    throw Error({"nothing to apply it to", parameter.where, "a volume with files", "none", ""});
 }
 
 void apply_quality(Scene& scene, const RenderOptions& o) {
@@ -193,6 +204,31 @@ void apply_quality(Scene& scene, const RenderOptions& o) {
   if (o.probe_pixels)
     settings.probe_pixels =
         integer_value("--probe-pixels", *o.probe_pixels, "render", "probe_pixels");
+}
+
+void apply_paths(Scene& scene, const RenderOptions& o) {
+  PathGoals& paths = scene.render.paths;
+  if (o.engine)
+    scene.render.engine = choice_value("--engine", *o.engine, "render", "engine") == "march"
+                              ? Engine::kMarch
+                              : Engine::kReference;
+  for (const auto& [option, value] :
+       {std::pair{"--spp", &o.spp}, std::pair{"--noise", &o.noise},
+        std::pair{"--levels", &o.levels}, std::pair{"--host-mib", &o.host_mib},
+        std::pair{"--exact-orders", &o.exact_orders}})
+    if (*value && scene.render.engine == Engine::kMarch)
+      throw Error({"nothing to apply it to", option, "--engine reference", "the march", ""});
+  // One goal on the command line replaces both of a scene.
+  if (o.spp || o.noise) paths.samples = 0, paths.noise = 0;
+  if (o.spp) paths.samples = integer_value("--spp", *o.spp, "paths", "spp");
+  if (o.noise) paths.noise = share_value("--noise", *o.noise, "paths", "noise");
+  if (o.levels)
+    paths.levels = choice_value("--levels", *o.levels, "paths", "levels") == "finest"
+                       ? PathLevels::kFinest
+                       : PathLevels::kResident;
+  if (o.exact_orders)
+    paths.exact_orders = integer_value("--exact-orders", *o.exact_orders, "paths", "exact_orders");
+  if (o.host_mib) paths.host_mib = number_value("--host-mib", *o.host_mib, "paths", "host_mib");
 }
 
 }  // namespace
@@ -260,31 +296,18 @@ void set_time(Scene& scene, const std::optional<std::string>& value) {
 }
 
 void set_force(Scene& scene, bool force) {
-  if (!force) return;
-  bool used = false;
-  for (VolumeSpec& volume : scene.volumes) {
-    if (volume.files.empty()) continue;
-    used = true;
-    auto& all = volume.parameters;
-    std::erase_if(all, [](const SourceParameter& p) { return p.name == "force"; });
-    all.push_back({"force", "", 1, "", false, "--force"});
-  }
-  if (!used) throw Error({"nothing to apply it to", "--force", "a volume with files", "none", ""});
+  if (force) lay_over(scene, {"force", "", 1, "", false, "--force"});
+}
+
+void set_region(Scene& scene, const std::optional<std::string>& value) {
+  if (!value) return;
+  list_value("--region", *value, 4, "SOUTH,WEST,NORTH,EAST in degrees");
+  lay_over(scene, {"region", "", 0, *value, true, "--region"});
 }
 
 void set_parameter(Scene& scene, const char* parameter, const std::string& option,
                    const std::optional<std::string>& value) {
-  if (!value) return;
-  const SourceParameter made = make_parameter(parameter, *value, option);
-  bool used = false;
-  for (VolumeSpec& volume : scene.volumes) {
-    if (volume.files.empty()) continue;
-    used = true;
-    auto& all = volume.parameters;
-    std::erase_if(all, [&](const SourceParameter& p) { return p.name == made.name; });
-    all.push_back(made);
-  }
-  if (!used) throw Error({"nothing to apply it to", option, "a volume with files", "none", ""});
+  if (value) lay_over(scene, make_parameter(parameter, *value, option));
 }
 
 Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
@@ -310,7 +333,9 @@ Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
   set_parameter(scene, "fps", "--fps", o.fps);
   set_time(scene, o.time);
   set_force(scene, o.force);
+  set_region(scene, o.region);
   apply_quality(scene, o);
+  apply_paths(scene, o);
   apply_planet(scene, o);
   apply_camera(scene, o);
   apply_light(scene, o);

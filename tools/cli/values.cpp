@@ -21,19 +21,31 @@ std::string shown(double value) {
   return text;
 }
 
+// A field of an object of that name, anywhere below `in`.
+const FieldGrammar* find_field(const ObjectGrammar& in, std::string_view object,
+                               std::string_view field) {
+  for (const FieldGrammar& known : in.fields) {
+    if (in.name == object && known.name == field) return &known;
+    if (!known.object) continue;
+    if (const FieldGrammar* found = find_field(*known.object, object, field)) return found;
+  }
+  return nullptr;
+}
+
 const FieldGrammar& grammar_of(std::string_view object, std::string_view field) {
-  const auto in = [&](const ObjectGrammar& grammar) -> const FieldGrammar* {
-    for (const FieldGrammar& known : grammar.fields)
-      if (known.name == field) return &known;
-    return nullptr;
-  };
-  const ObjectGrammar& scene = scene_grammar();
-  if (object == scene.name)
-    if (const FieldGrammar* found = in(scene)) return *found;
-  for (const FieldGrammar& part : scene.fields)
-    if (part.name == object && part.object)
-      if (const FieldGrammar* found = in(*part.object)) return *found;
+  if (const FieldGrammar* found = find_field(scene_grammar(), object, field)) return *found;
   throw std::logic_error("no field " + std::string(field));
+}
+
+double in_range(const std::string& option, const std::string& text, double value,
+                const FieldGrammar& grammar) {
+  const bool whole = grammar.kind != FieldKind::kInteger || value == std::floor(value);
+  if (!whole || value < grammar.low || value > grammar.high)
+    refuse(option,
+           std::string(grammar.kind == FieldKind::kInteger ? "a whole number" : "a number") +
+               " from " + shown(grammar.low) + " to " + shown(grammar.high),
+           text);
+  return value;
 }
 
 }  // namespace
@@ -50,15 +62,14 @@ double number_value(const std::string& option, const std::string& text) {
 
 double number_value(const std::string& option, const std::string& text, const char* object,
                     const char* field) {
-  const FieldGrammar& grammar = grammar_of(object, field);
-  const double value = number_value(option, text);
-  const bool whole = grammar.kind != FieldKind::kInteger || value == std::floor(value);
-  if (!whole || value < grammar.low || value > grammar.high)
-    refuse(option,
-           std::string(grammar.kind == FieldKind::kInteger ? "a whole number" : "a number") +
-               " from " + shown(grammar.low) + " to " + shown(grammar.high),
-           text);
-  return value;
+  return in_range(option, text, number_value(option, text), grammar_of(object, field));
+}
+
+double share_value(const std::string& option, const std::string& text, const char* object,
+                   const char* field) {
+  const bool percent = text.ends_with('%');
+  const double value = number_value(option, percent ? text.substr(0, text.size() - 1) : text);
+  return in_range(option, text, percent ? value / 100 : value, grammar_of(object, field));
 }
 
 int integer_value(const std::string& option, const std::string& text, const char* object,
@@ -77,6 +88,15 @@ std::string choice_value(const std::string& option, const std::string& text, con
     left.remove_prefix(bar == std::string_view::npos ? left.size() : bar + 1);
   }
   refuse(option, listed, text);
+}
+
+ToneMap tone_map_value(const std::string& text) {
+  const std::string word = choice_value("--tone-map", text, "scene", "tone_map");
+  return word == "none" ? ToneMap::kNone : ToneMap::kAces;
+}
+
+const char* tone_map_name(ToneMap tone_map) {
+  return tone_map == ToneMap::kNone ? "none" : "aces";
 }
 
 std::vector<double> list_value(const std::string& option, const std::string& text,

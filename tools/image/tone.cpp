@@ -74,6 +74,10 @@ ByteImage to_display(const FloatImage& radiance, double exposure_ev, ToneMap ton
   return out;
 }
 
+glm::dvec3 display_white(const Scene& scene) {
+  return scene.planet ? scene.sun.irradiance_W_per_m2_nm.value_or(glm::dvec3(1)) : glm::dvec3(1);
+}
+
 double exposure_from(const FloatImage& radiance, std::span<const float> optical_depth) {
   Luminances y = luminances(radiance, optical_depth);
   return exposure_for(percentile(y.cloud.empty() ? y.all : y.cloud, 0.95));

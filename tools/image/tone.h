@@ -14,6 +14,9 @@ namespace nepho {
 ByteImage to_display(const FloatImage& radiance, double exposure_ev, ToneMap tone_map,
                      bool dither = false, const glm::dvec3& white = glm::dvec3(1));
 
+// The `white` of a scene that was drawn: a planet's sun, else 1.
+glm::dvec3 display_white(const Scene& scene);
+
 // The exposure that puts the bright end (95th percentile) of the cloud's luminance at
 // kBrightCloud; pixels count where the view optical depth is above 0.1. Without a cloud, the whole
 // picture counts; a black picture gets 0.

@@ -220,6 +220,17 @@ void read_render(const ObjectReader& in, RenderSettings& settings) {
   settings.max_level = in.integer("max_level").value_or(settings.max_level);
   settings.seed = std::uint64_t(in.number("seed").value_or(double(settings.seed)));
   settings.probe_pixels = in.integer("probe_pixels").value_or(settings.probe_pixels);
+  if (const auto engine = in.text("engine"))
+    settings.engine = *engine == "march" ? Engine::kMarch : Engine::kReference;
+  if (const auto paths = in.object("paths")) {
+    settings.paths.samples = paths->integer("spp").value_or(0);
+    settings.paths.noise = paths->number("noise").value_or(0);
+    if (const auto levels = paths->text("levels"))
+      settings.paths.levels = *levels == "finest" ? PathLevels::kFinest : PathLevels::kResident;
+    settings.paths.host_mib = paths->number("host_mib").value_or(settings.paths.host_mib);
+    settings.paths.exact_orders =
+        paths->integer("exact_orders").value_or(settings.paths.exact_orders);
+  }
 }
 
 // Where the camera looks, for scenes on a globe that give no place of their own.

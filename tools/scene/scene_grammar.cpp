@@ -115,6 +115,15 @@ constexpr FieldGrammar kImageFields[] = {
 };
 constexpr ObjectGrammar kImage{"image", kImageFields};
 
+constexpr FieldGrammar kPathsFields[] = {
+    {"spp", kInteger, 1, 1e9},
+    {"noise", kNumber, 1e-5, 10},
+    {"levels", kChoice, 0, 0, "finest|resident"},
+    {"host_mib", kNumber, 1, 1e6},
+    {"exact_orders", kInteger, -1, 1e6},
+};
+constexpr ObjectGrammar kPaths{"paths", kPathsFields};
+
 constexpr FieldGrammar kRenderFields[] = {
     {"budget_mib", kNumber, 0.001, 1e6},
     {"step_voxels", kNumber, 0, 1024},
@@ -126,6 +135,8 @@ constexpr FieldGrammar kRenderFields[] = {
     {"max_level", kInteger, 0, 31},
     {"seed", kInteger, 0, kLargestExact},
     {"probe_pixels", kInteger, 0, 1e6},
+    {"engine", kChoice, 0, 0, "march|reference"},
+    {"paths", kObject, 0, 0, {}, &kPaths},
 };
 constexpr ObjectGrammar kRender{"render", kRenderFields};
 

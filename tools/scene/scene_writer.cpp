@@ -121,6 +121,14 @@ Json write_render(const RenderSettings& settings) {
   out["max_level"] = settings.max_level;
   out["seed"] = settings.seed;
   out["probe_pixels"] = settings.probe_pixels;
+  if (settings.engine == Engine::kMarch) return out;
+  out["engine"] = "reference";
+  Json& paths = out["paths"];
+  paths = {{"levels", settings.paths.levels == PathLevels::kFinest ? "finest" : "resident"},
+           {"host_mib", settings.paths.host_mib},
+           {"exact_orders", settings.paths.exact_orders}};
+  if (settings.paths.samples) paths["spp"] = settings.paths.samples;
+  if (settings.paths.noise > 0) paths["noise"] = settings.paths.noise;
   return out;
 }
 

@@ -83,12 +83,15 @@ void add_water(const WaterVariable& water, std::span<const float> values, const 
       double content = amount;
       if (water.basis == Basis::kDryAir) content *= state.dry_density_kg_per_m3;
       if (water.basis == Basis::kMoistAir) content *= state.density_kg_per_m3;
-      if (!std::isfinite(content) || !std::isfinite(state.temperature_K)) {
+      // NaN is neither.
+      statistics.coldest_K = std::min(statistics.coldest_K, state.temperature_K);
+      statistics.warmest_K = std::max(statistics.warmest_K, state.temperature_K);
+      if (!std::isfinite(content) || content < 0 || !std::isfinite(state.temperature_K)) {
         ++statistics.without_air;
         continue;
       }
-      const Species species =
-          state.temperature_K < water.freezes_below_K ? frozen(water.species) : water.species;
+      const bool freezes = water.freezes_below_K > 0 && state.temperature_K < water.freezes_below_K;
+      const Species species = freezes ? frozen(water.species) : water.species;
       const double per_m =
           extinction(species, content, setting,
                      {n, at, state.temperature_K, state.density_kg_per_m3}, statistics);

@@ -15,6 +15,7 @@ struct WaterStatistics {
   double highest_content_kg_per_m3 = 0;  // all kinds together are not counted: the largest kind
   std::string highest_variable;
   double highest_extinction_per_m = 0;
+  double coldest_K = 1e30, warmest_K = -1e30;  // of air with water
   // Of columns; cloud apart from precipitation.
   double highest_cloud_kg_per_m2 = 0, mean_cloud_kg_per_m2 = 0;
   double highest_precipitation_kg_per_m2 = 0;

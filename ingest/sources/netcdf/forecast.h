@@ -42,6 +42,12 @@ struct ForecastGround {
   std::vector<float> height_m, water;  // water: 1 sea .. 0 land
 };
 
+// Of a variable of a file: bytes of values that were asked for, and of all its values.
+struct VariableBytes {
+  std::string name;
+  std::uint64_t read = 0, held = 0;
+};
+
 // Thread-safe; reads under the host's I/O lock. Throws Error.
 class Forecast {
  public:
@@ -61,6 +67,8 @@ class Forecast {
   virtual double liquid_radius_m() const = 0;
   virtual std::vector<std::string> assumptions() const = 0;
   virtual std::vector<std::string> facts() const = 0;
+  // What has been read until now, of all variables of all files.
+  virtual std::vector<VariableBytes> bytes_read() const { return {}; }
 };
 
 }  // namespace nepho::netcdf

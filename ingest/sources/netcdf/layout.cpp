@@ -84,7 +84,7 @@ Layout choose_layout(const Forecast& forecast, const LayoutOptions& options) {
   layout.voxel_width_m = quarter_m / (kBrickCells * std::exp2(horizontal));
   if (horizontal > NodeKey::kMaxSplitsXy ||
       area_m2 / (layout.voxel_width_m * layout.voxel_width_m) > kMostSampleColumns)
-    too_fine("horizontal_resolution", width_m);
+    too_fine("horizontal_resolution_m", width_m);
 
   // From two voxels below the lowest ground, so that hats there have a layer to hold, to the top.
   const glm::dvec2 range_m = forecast.height_range_m();
@@ -98,7 +98,7 @@ Layout choose_layout(const Forecast& forecast, const LayoutOptions& options) {
   // The nearest power of two; finer than asked only where the user asked.
   const int vertical = std::max(
       0, options.vertical_resolution_m ? int(std::ceil(exact - 1e-9)) : int(std::lround(exact)));
-  if (vertical > NodeKey::kMaxSplitsZ) too_fine("vertical_resolution", asked_m);
+  if (vertical > NodeKey::kMaxSplitsZ) too_fine("vertical_resolution_m", asked_m);
   const double cells = kBrickCells * std::exp2(vertical);
   layout.voxel_height_m = tall_m / cells;
   if (!options.vertical_resolution_m)

@@ -7,6 +7,7 @@ namespace {
 
 // Parameters beside those of make_source():
 //   force   1 draws what is out of every cloud's range, and is else refused (0)
+//   region  "SOUTH,WEST,NORTH,EAST" in degrees: only cells there are read (the whole file)
 std::unique_ptr<BrickSource> open_source(const SourceRequest& request) {
   const std::string name = request.volume_name ? request.volume_name : "";
   if (request.file_count == 0)
@@ -17,6 +18,8 @@ std::unique_ptr<BrickSource> open_source(const SourceRequest& request) {
   open.files.assign(request.files, request.files + request.file_count);
   open.io_lock = request.io_lock;
   open.force = parameters.integer("force", 0, 0, 1) == 1;
+  if (const std::string region = parameters.word("region", ""); !region.empty())
+    open.region = parse_region(region, parameters.where("region"));
   return make_source(name, open_forecast(open), parameters);
 }
 

@@ -7,17 +7,22 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <numeric>
 
 #include "api/module_support.h"
 #include "classic_size.h"
 #include "core/error.h"
+#include "survives.h"
 
 namespace nepho::netcdf {
 namespace {
 
 constexpr std::size_t kBlockValues = std::size_t(1) << 18;  // unpacked at once: 2 MiB of doubles
+// Of each variable while the file is open. netCDF's own 16 MiB keep all that was ever read; here
+// everything is read once, or nearly.
+constexpr std::size_t kChunkCache_bytes = std::size_t(1) << 20, kChunkCacheSlots = 1009;
 
 // netCDF switches HDF5's error printing off on the thread that first calls it; HDF5 keeps that
 // setting per thread.
@@ -42,6 +47,13 @@ void check_plain_file(const std::string& path) {
     throw Error({"this is no file", path, "a netCDF file", "a folder or a device", ""});
   if (std::filesystem::file_size(path, error) == 0)
     throw Error({"the file is empty", path, "a netCDF file", "0 bytes", "write or copy it again"});
+}
+
+bool is_hdf5(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string magic(4, '\0');
+  in.read(magic.data(), 4);
+  return magic == "\x89HDF";
 }
 
 std::string trimmed(std::string text) {
@@ -121,7 +133,10 @@ auto NcFile::locked(Action&& action) const {
 NcFile::NcFile(std::string path, IoLock io_lock) : path_(std::move(path)), io_lock_(io_lock) {
   check_plain_file(path_);
   check_classic_size(path_);
-  locked([&] {
+  const auto open = [&] {
+#ifndef NEPHO_MUTANT_KEPT_CHUNKS
+    nc_set_chunk_cache(kChunkCache_bytes, kChunkCacheSlots, 0.75f);
+#endif
     if (const int status = nc_open(path_.c_str(), NC_NOWRITE, &id_)) refuse(path_, status);
     try {
       inquire();
@@ -129,6 +144,14 @@ NcFile::NcFile(std::string path, IoLock io_lock) : path_(std::move(path)), io_lo
       nc_close(id_);
       throw;
     }
+  };
+  locked([&] {
+    // Elsewhere first, all of it: much of the headers is read only when it is asked for.
+    if (is_hdf5(path_) && !survives([&] { open(), nc_close(id_); }))
+      throw Error({"netCDF cannot read the file", path_, "an intact netCDF file",
+                   "headers that the HDF5 library breaks down on",
+                   "it is damaged: write or copy it again"});
+    open();
   });
 }
 
@@ -148,6 +171,7 @@ void NcFile::inquire() {
     dimensions_.push_back(dimension);
   }
   for (int v = 0; v < variables; ++v) variables_.push_back(inquire_variable(v));
+  bytes_ = std::vector<std::atomic<std::uint64_t>>(std::size_t(variables));
   read_attributes(id_, NC_GLOBAL, attributes, global_.attributes);
 }
 
@@ -161,6 +185,7 @@ NcVariable NcFile::inquire_variable(int id) const {
           nc_inq_var(id_, id, name, &variable.type, &dimensions, ids.data(), &attributes))
     refuse(path_, status);
   variable.name = name;
+  nc_inq_type(id_, variable.type, nullptr, &variable.value_bytes);
   ids.resize(std::size_t(dimensions));
   variable.dimensions = ids;
   read_attributes(id_, id, attributes, variable.attributes);
@@ -185,6 +210,17 @@ std::string NcFile::shape_text(const NcVariable& variable) const {
   return variable.name + "(" + text + ")";
 }
 
+std::size_t NcFile::values_in(const NcVariable& variable) const {
+  std::size_t total = 1;
+  for (const int d : variable.dimensions) total *= size(d);
+  return total;
+}
+
+VariableBytes NcFile::bytes_read(const NcVariable& variable) const {
+  return {variable.name, bytes_[std::size_t(variable.id)],
+          values_in(variable) * variable.value_bytes};
+}
+
 // Floats without packing are read where they stay; all else goes through blocks of doubles along
 // the slowest dimension.
 template <class T>
@@ -195,6 +231,7 @@ std::vector<T> NcFile::read(const NcVariable& variable, const std::vector<std::s
       std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
   std::vector<T> result(total);
   if (total == 0) return result;
+  bytes_[std::size_t(variable.id)] += total * variable.value_bytes;
   const auto fail = [&](int status) {
     throw Error({"netCDF cannot read the variable", where(variable), "an intact netCDF file",
                  nc_strerror(status), "the file is cut short or damaged: write or copy it again"});
@@ -249,8 +286,8 @@ std::vector<double> NcFile::read_all(const NcVariable& variable) const {
 
 std::vector<std::string> NcFile::read_texts(const NcVariable& variable) const {
   const std::vector<std::size_t> count = shape(variable);
-  const std::size_t total =
-      std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
+  const std::size_t total = values_in(variable);
+  bytes_[std::size_t(variable.id)] += total * variable.value_bytes;
   std::vector<std::string> result;
   locked([&] {
     if (variable.type == NC_CHAR) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "api/source_module.h"
+#include "forecast.h"
 
 namespace nepho::netcdf {
 
@@ -28,6 +30,7 @@ struct NcAttribute {
 struct NcVariable {
   std::string name;
   int id = 0, type = 0;         // type: nc_type
+  std::size_t value_bytes = 0;  // of one value in the file, unpacked from compression
   std::vector<int> dimensions;  // in the file's order, slowest first
   std::vector<NcAttribute> attributes;
 
@@ -71,6 +74,9 @@ class NcFile {
   // A variable of characters: one string per row of its last dimension; of strings: each.
   std::vector<std::string> read_texts(const NcVariable& variable) const;
 
+  // Bytes of this variable's values that have been asked for, and of all its values.
+  VariableBytes bytes_read(const NcVariable& variable) const;
+
   // "file [variable]", for errors.
   std::string where(const NcVariable& variable) const { return path_ + " [" + variable.name + "]"; }
 
@@ -79,6 +85,7 @@ class NcFile {
   auto locked(Action&& action) const;
   void inquire();
   NcVariable inquire_variable(int id) const;
+  std::size_t values_in(const NcVariable& variable) const;
   template <class T>
   std::vector<T> read(const NcVariable& variable, const std::vector<std::size_t>& start,
                       const std::vector<std::size_t>& count) const;
@@ -88,7 +95,8 @@ class NcFile {
   int id_ = -1;
   std::vector<NcDimension> dimensions_;
   std::vector<NcVariable> variables_;
-  NcVariable global_;  // its attributes only
+  NcVariable global_;                                      // its attributes only
+  mutable std::vector<std::atomic<std::uint64_t>> bytes_;  // asked for, by variable
 };
 
 // What a packed value means (CF 1.11, 2.5.1 and 8.1; netCDF Users Guide, appendix A).

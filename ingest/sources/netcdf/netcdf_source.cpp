@@ -84,7 +84,7 @@ class Moment {
     if (field.nodes.size() > kMostNodes)
       throw Error({"the forecast has too many bricks at this resolution", "",
                    "at most " + std::to_string(kMostNodes), std::to_string(field.nodes.size()),
-                   "choose a coarser vertical_resolution or horizontal_resolution"});
+                   "choose a coarser vertical_resolution_m or horizontal_resolution_m"});
     field.samples = [this, part](NodeKey key, double* samples) {
       if (box_)
         box_->samples(remap_, part, key, samples);
@@ -230,7 +230,18 @@ void NetcdfSource::describe(const std::string& name, const Moment& first) {
   state_facts(first);
 }
 
+std::optional<std::string> reading_fact(const Forecast& forecast) {
+  double read = 0, held = 0;
+  for (const VariableBytes& bytes : forecast.bytes_read()) {
+    read += double(bytes.read);
+    held += double(bytes.held);
+  }
+  if (!(held > 0)) return {};
+  return text("Read: %.3g MB; all values of the data are %.3g MB.", read / 1e6, held / 1e6);
+}
+
 void NetcdfSource::state_facts(const Moment& first) {
+  if (const auto reading = reading_fact(*forecast_)) info_.facts.push_back(*reading);
   info_.facts.push_back(text("Finest voxels are %.4g km wide (at most) and %.4g m high.",
                              layout_.voxel_width_m / 1000, layout_.voxel_height_m));
   const glm::dvec2 range_m = forecast_->height_range_m();
@@ -266,9 +277,9 @@ std::unique_ptr<BrickSource> make_source(const std::string& volume_name,
                                          std::shared_ptr<const Forecast> forecast,
                                          Parameters& parameters) {
   SourceOptions options{};
-  options.layout = {parameters.positive("horizontal_resolution"),
-                    parameters.positive("vertical_resolution")};
-  options.clear_below_per_m = parameters.number_in("clear_below", 1e-9, 0, 1e-3);
+  options.layout = {parameters.positive("horizontal_resolution_m"),
+                    parameters.positive("vertical_resolution_m")};
+  options.clear_below_per_m = parameters.number_in("clear_below_per_m", 1e-9, 0, 1e-3);
   options.layers = parameters.choice("layers", {"smooth", "constant"}) == "smooth"
                        ? Layers::kSmooth
                        : Layers::kConstant;
@@ -276,7 +287,7 @@ std::unique_ptr<BrickSource> make_source(const std::string& volume_name,
   options.max_level = parameters.integer("max_level", 0, 0, NodeKey::kMaxSplitsZ);
   if (options.max_level > 0 && !options.box)
     throw Error({"a level without a box", parameters.where("max_level"), "chart box", "chart shell",
-                 "of the shell, choose vertical_resolution and horizontal_resolution"});
+                 "of the shell, choose vertical_resolution_m and horizontal_resolution_m"});
   parameters.finish();
   return std::make_unique<NetcdfSource>(volume_name, std::move(forecast), options);
 }

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
@@ -13,7 +14,8 @@
 namespace nepho {
 namespace {
 
-constexpr std::uint32_t kFirstRound = 4, kLongestRound = 64;
+constexpr std::uint32_t kFirstCheck = 8, kLongestCheck = 128;  // samples, of noise
+constexpr double kRound_s = 1;
 
 // Sums over one pixel's samples. Welford's, so that many samples of nearly the same do not cancel.
 struct Tally {
@@ -65,27 +67,35 @@ PathPicture path_trace(const PathTracer& tracer, const RenderRequest& request, c
   const RenderSettings& settings = request.settings;
   const int width = settings.width, height = settings.height;
   std::vector<Tally> tallies(std::size_t(width) * std::size_t(height));
-  std::uint32_t done = 0, round = kFirstRound;
+  std::uint32_t done = 0, next_check = kFirstCheck, round = 1;
   while (true) {
-    if (goal.samples) round = std::min(round, goal.samples - done);
+    // Rounds are as long as a user waits; where noise is looked at does not depend on them, nor on
+    // the machine.
+    const std::uint32_t last = goal.samples ? std::min(next_check, goal.samples) : next_check;
+    const std::uint32_t end = std::min(done + round, last);
+    const auto start = std::chrono::steady_clock::now();
     tbb::parallel_for(std::size_t{0}, tallies.size(), [&](std::size_t pixel) {
       const Ray ray = camera_ray(request.camera, width, height, int(pixel % std::size_t(width)),
                                  int(pixel / std::size_t(width)));
-      for (std::uint32_t s = done; s < done + round; ++s) {
+      for (std::uint32_t s = done; s < end; ++s) {
         Random random(settings.seed, pixel, s);
         tallies[pixel].add(tracer.sample(ray, random));
       }
     });
-    done += round;
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    if (spent.count() < kRound_s / 2) round *= 2;
+    if (spent.count() > kRound_s) round = std::max(round / 2, 1u);
+    done = end;
     PathPicture picture = picture_of(tallies, width, height);
-    const bool met = (goal.samples && done >= goal.samples) ||
-                     (goal.noise > 0 && done > kFirstRound && picture.noise <= goal.noise);
-    if (met) return picture;
+    if (goal.samples && done >= goal.samples) return picture;
+    if (done == next_check) {
+      if (goal.noise > 0 && picture.noise <= goal.noise) return picture;
+      next_check += std::min(next_check, kLongestCheck);
+    }
     if (stop && stop(picture)) {
       picture.stopped = true;
       return picture;
     }
-    round = std::min(2 * round, kLongestRound);
   }
 }
 

@@ -21,10 +21,11 @@ struct PathGoal {
   std::uint32_t samples = 0;  // per pixel; 0: by `noise` alone
   double noise = 0;           // as PathPicture::noise; 0: by `samples` alone
 };
-// Asked after each round of samples with what there is, and in it; true: enough, keep what is done.
+// Asked about every second with what there is so far; true: enough, keep that.
 using PathStop = std::function<bool(const PathPicture&)>;
 
-// Rounds double until the goal is met. Throws std::invalid_argument without a goal.
+// Until the goal is met; noise is looked at after 8, 16, 32, ... samples. Throws
+// std::invalid_argument without a goal.
 PathPicture path_trace(const PathTracer& tracer, const RenderRequest& request, const PathGoal& goal,
                        const PathStop& stop);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optics/phase_table.h"
 #include "tree/source_verbs.h"
 
 namespace nepho {
@@ -19,6 +20,12 @@ double power_weight(double own, double other) {
   return 1;
 #endif
   return own > 0 ? 1 / (1 + square(other / own)) : 0;
+}
+
+// Henyey-Greenstein of the same asymmetry, that of 550 nm.
+PhaseSampler smooth(const Phase& phase) {
+  return PhaseSampler(
+      {.kind = PhaseKind::kHenyeyGreenstein, .asymmetry = phase_bulk(phase).asymmetry[1]});
 }
 
 double most(const glm::dvec3& c) {
@@ -53,17 +60,30 @@ struct PathTracer::Path {
 };
 
 PathTracer::PathTracer(const Forest& forest, const RenderRequest& request, PathSettings settings)
-    : medium_(forest), around_(request, settings.sun_radius_rad) {
+    : medium_(forest),
+      around_(request, settings.sun_radius_rad),
+      exact_orders_(settings.exact_orders) {
+  if (request.planet && request.planet->air) {
+    air_.emplace(*request.planet->air, request.planet->body);
+    aerosol_ = PhaseSampler::cornette_shanks(air_->aerosol_asymmetry());
+    grey_ = false;
+  }
   for (const RenderVolume& volume : request.volumes) {
     phases_.emplace_back(volume.phase);
     ice_phases_.emplace_back(has_ice(volume.source->info()) ? volume.ice_phase : volume.phase);
+    smooth_phases_.emplace_back(smooth(volume.phase));
+    smooth_ice_phases_.emplace_back(smooth(volume.ice_phase));
     co_albedos_.push_back(volume.co_albedo);
-    grey_ = grey_ && phases_.back().grey() && ice_phases_.back().grey();
+    grey_ = grey_ && !air_ && phases_.back().grey() && ice_phases_.back().grey();
   }
 }
 
 const PhaseSampler& PathTracer::phase(const PathMedium::Collision& collision) const {
   return (collision.ice ? ice_phases_ : phases_)[std::size_t(collision.volume)];
+}
+
+const PhaseSampler& PathTracer::smooth_phase(const PathMedium::Collision& collision) const {
+  return (collision.ice ? smooth_ice_phases_ : smooth_phases_)[std::size_t(collision.volume)];
 }
 
 glm::dvec3 PathTracer::scattered(const PathMedium::Collision& collision,
@@ -74,38 +94,68 @@ glm::dvec3 PathTracer::scattered(const PathMedium::Collision& collision,
 
 PathSample PathTracer::sample(const Ray& ray, Random& random) const {
   Path path{.ray = ray, .hero = grey_ ? 1 : int(3 * random.uniform()), .random = random};
+  if (air_) {  // its free paths depend on the wavelength: no mixture
+    path.densities = glm::dvec3{0.0};
+    path.densities[path.hero] = 1;
+  }
   while (path.alive) {
     const double ground_m = around_.ground_m(path.ray);
-    const PathMedium::Collision hit = medium_.collide(path.ray, ground_m, random);
-    if (hit.volume < 0) {
-      const bool ground = ground_m < kNoDistance_m;
-      if (ground && around_.ground_scatters()) {
-        if (!meet_ground(path, ground_m)) break;
-        continue;
-      }
-      leave(path, ground);
-      break;
-    }
-    path.ray.origin_m += hit.t_m * path.ray.direction;
-    ++path.result.scatterings;
+    const PhaseSampler* phase = next_scattering(path, ground_m);
 #if defined(NEPHO_MUTANT_BOUNCE_CAP)
     if (path.result.scatterings > 64) break;
 #endif
-#if defined(NEPHO_MUTANT_NO_CO_ALBEDO)
-    const glm::dvec3 lost{0.0};
-#else
-    const glm::dvec3& lost = co_albedos_[std::size_t(hit.volume)];
-#endif
-    // By the co-albedo: 1 - 4e-7 has few digits left, and 4e-7 all of them.
-    const double absorbed = std::min({lost.r, lost.g, lost.b});
-    if (absorbed > 0) {
-      if (random.uniform() < absorbed) break;
-      path.throughput *= (1.0 - lost) / (1 - absorbed);
+    if (phase) {
+      light_at_collision(path, *phase);
+      scatter(path, *phase);
+    } else if (path.alive) {
+      const bool ground = ground_m < kNoDistance_m;
+      if (ground && around_.ground_scatters() && meet_ground(path, ground_m)) continue;
+      if (!(ground && around_.ground_scatters())) leave(path, ground);
+      break;
     }
-    light_at_collision(path, phase(hit));
-    scatter(path, phase(hit));
   }
   return path.result;
+}
+
+const PhaseSampler* PathTracer::next_scattering(Path& path, double ground_m) const {
+  Random& random = path.random;
+  const PathMedium::Collision hit = medium_.collide(path.ray, ground_m, random);
+  const double reach_m = std::min(ground_m, hit.t_m);
+  if (air_) {
+    const PathAir::Collision in_air = air_->collide(path.ray, reach_m, path.hero, random);
+    if (in_air.event == PathAir::Event::kAbsorbed) path.alive = false;
+    if (in_air.event != PathAir::Event::kNone) {
+      path.ray.origin_m += in_air.t_m * path.ray.direction;
+      if (!path.alive) return nullptr;
+      ++path.result.scatterings;
+      return in_air.event == PathAir::Event::kRayleigh ? &molecules_ : &aerosol_;
+    }
+  }
+  if (hit.volume < 0) return nullptr;
+  path.ray.origin_m += hit.t_m * path.ray.direction;
+  ++path.result.scatterings;
+#if defined(NEPHO_MUTANT_NO_CO_ALBEDO)
+  const glm::dvec3 lost{0.0};
+#else
+  const glm::dvec3& lost = co_albedos_[std::size_t(hit.volume)];
+#endif
+  // By the co-albedo: 1 - 4e-7 has few digits left, and 4e-7 all of them.
+  const double absorbed = std::min({lost.r, lost.g, lost.b});
+  if (absorbed > 0) {
+    if (random.uniform() < absorbed) {
+      path.alive = false;
+      return nullptr;
+    }
+    path.throughput *= (1.0 - lost) / (1 - absorbed);
+  }
+  const bool exact = exact_orders_ < 0 || path.result.scatterings <= exact_orders_;
+  return exact ? &phase(hit) : &smooth_phase(hit);
+}
+
+double PathTracer::passed(const Path& path, const Ray& ray) const {
+  const double clouds = medium_.transmittance(ray, kNoDistance_m, path.random);
+  if (!air_ || !(clouds > 0)) return clouds;
+  return clouds * air_->transmittance(ray, kNoDistance_m, path.hero, path.random);
 }
 
 // The sun, by a direction of its disc.
@@ -120,7 +170,7 @@ void PathTracer::light_at_collision(Path& path, const PhaseSampler& phase) const
   const double part = around_.beam() ? 1 : power_weight(own, density);
   const glm::dvec3 light = part * path.weights() * value * around_.sun_W_per_m2_nm();
   if (!(most(light) > 0)) return;
-  path.add(light * medium_.transmittance(ray, kNoDistance_m, path.random));
+  path.add(light * passed(path, ray));
 }
 
 void PathTracer::scatter(Path& path, const PhaseSampler& phase) const {
@@ -145,7 +195,7 @@ bool PathTracer::meet_ground(Path& path, double ground_m) const {
   const glm::dvec3 light =
       part * path.weights() * around_.reflect(spot, to_eye, to_sun) * around_.sun_W_per_m2_nm();
   if (most(light) > 0 && !(around_.ground_m(ray) < kNoDistance_m))
-    path.add(light * medium_.transmittance(ray, kNoDistance_m, path.random));
+    path.add(light * passed(path, ray));
 
   const Surroundings::Way way = around_.sample(spot, to_eye, path.random);
   const glm::dvec3 reflected = around_.reflect(spot, to_eye, way.direction);

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
+#include "reference/path/air.h"
 #include "reference/path/medium.h"
 #include "reference/path/sampling.h"
 #include "reference/path/surroundings.h"
@@ -23,6 +24,12 @@ namespace nepho {
 struct PathSettings {
   // Of the sun's disc. 0: a beam, for tests against plane-parallel truth.
   double sun_radius_rad = 0.004675;
+  // Scatterings of a path that keep a tabled phase function; later ones are Henyey-Greenstein's of
+  // the same asymmetry ("smoothed late orders"). A droplet's forward peak is 570 per sr, and half
+  // of all scatterings are in it: a path that turns to the sun by chance is a spike. On a cumulus
+  // at 256 paths a pixel noise is 150 % with -1 (never smoothed), 26 % with 4, 23 % with 2; and
+  // what few spikes leave out is a bias of 2.5 % that no noise shows.
+  int exact_orders = 2;
 };
 
 struct PathSample {
@@ -49,15 +56,24 @@ class PathTracer {
 
  private:
   struct Path;
+  double passed(const Path& path, const Ray& ray) const;
+  // The next scattering, at which the path then stands; null: none, the path is out of the clouds
+  // and the air, at the ground, or absorbed.
+  const PhaseSampler* next_scattering(Path& path, double ground_m) const;
   const PhaseSampler& phase(const PathMedium::Collision& collision) const;
+  const PhaseSampler& smooth_phase(const PathMedium::Collision& collision) const;
   void light_at_collision(Path& path, const PhaseSampler& phase) const;
   void scatter(Path& path, const PhaseSampler& phase) const;
   bool meet_ground(Path& path, double ground_m) const;
   void leave(Path& path, bool ground) const;
 
   PathMedium medium_;
+  std::optional<PathAir> air_;
+  PhaseSampler molecules_ = PhaseSampler::rayleigh();
+  PhaseSampler aerosol_ = PhaseSampler::cornette_shanks(0);
   Surroundings around_;
-  std::vector<PhaseSampler> phases_, ice_phases_;
+  std::vector<PhaseSampler> phases_, ice_phases_, smooth_phases_, smooth_ice_phases_;
+  int exact_orders_;
   std::vector<glm::dvec3> co_albedos_;
   bool grey_ = true;  // no phase function depends on the wavelength
 };

@@ -55,9 +55,11 @@ glm::dvec3 turned(const glm::dvec3& direction, const Turn& turn, Random& random)
                         turn.sine * (std::cos(azimuth) * first + std::sin(azimuth) * second));
 }
 
-PhaseSampler::PhaseSampler(const Phase& phase) : asymmetry_(phase.asymmetry) {
+PhaseSampler::PhaseSampler(const Phase& phase)
+    : kind_(phase.kind == PhaseKind::kMie ? Kind::kTable : Kind::kHenyeyGreenstein),
+      asymmetry_(phase.asymmetry) {
   const std::vector<float> log_values = phase_table(phase);  // refuses what is out of range
-  if (phase.kind == PhaseKind::kHenyeyGreenstein) return;
+  if (kind_ != Kind::kTable) return;
   for (int c = 0; c < 3; ++c) tables_[std::size_t(c)] = make_table(log_values, c);
 }
 
@@ -80,7 +82,9 @@ PhaseSampler::Table PhaseSampler::make_table(const std::vector<float>& log_value
 }
 
 double PhaseSampler::value(int wavelength, double one_minus_cos) const {
-  if (grey()) return f64::hg_phase(one_minus_cos, asymmetry_);
+  if (kind_ == Kind::kHenyeyGreenstein) return f64::hg_phase(one_minus_cos, asymmetry_);
+  if (kind_ == Kind::kRayleigh) return f64::rayleigh_phase(one_minus_cos);
+  if (kind_ == Kind::kCornetteShanks) return f64::cornette_shanks_phase(one_minus_cos, asymmetry_);
   const Table& table = tables_[std::size_t(wavelength)];
   const double u = f64::phase_table_coordinate(one_minus_cos) * (kPhaseTexels - 1);
   const auto i = std::size_t(std::clamp(u, 0.0, double(kPhaseTexels - 2)));
@@ -89,7 +93,9 @@ double PhaseSampler::value(int wavelength, double one_minus_cos) const {
 }
 
 Turn PhaseSampler::sample(int wavelength, Random& random) const {
-  if (grey()) return sample_hg(asymmetry_, random.uniform());
+  if (kind_ == Kind::kHenyeyGreenstein) return sample_hg(asymmetry_, random.uniform());
+  if (kind_ == Kind::kRayleigh) return sample_rayleigh(random);
+  if (kind_ == Kind::kCornetteShanks) return sample_draine(asymmetry_, 1, random);
   const Table& table = tables_[std::size_t(wavelength)];
   while (true) {
     const double mass = random.uniform() * table.envelope.back();

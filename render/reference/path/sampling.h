@@ -43,14 +43,21 @@ class PhaseSampler {
  public:
   // Throws Error as phase_table() does.
   explicit PhaseSampler(const Phase& phase);
+  // Of air: molecules, and aerosol (Cornette and Shanks 1992).
+  static PhaseSampler rayleigh() { return PhaseSampler(Kind::kRayleigh, 0); }
+  static PhaseSampler cornette_shanks(double asymmetry) {
+    return PhaseSampler(Kind::kCornetteShanks, asymmetry);
+  }
 
   // Same at all three wavelengths.
-  bool grey() const { return tables_[0].log_values.empty(); }
+  bool grey() const { return kind_ != Kind::kTable; }
   // 1/sr at wavelength 0, 1 or 2 (650, 550, 450 nm).
   double value(int wavelength, double one_minus_cos) const;
   Turn sample(int wavelength, Random& random) const;
 
  private:
+  enum class Kind : std::uint8_t { kTable, kHenyeyGreenstein, kRayleigh, kCornetteShanks };
+  PhaseSampler(Kind kind, double asymmetry) : kind_(kind), asymmetry_(asymmetry) {}
   struct Table {
     std::vector<double> log_values;          // by texel; divided by their integral
     std::vector<double> envelope, log_most;  // by interval: sums of mass, and the larger end
@@ -58,6 +65,7 @@ class PhaseSampler {
   };
   static Table make_table(const std::vector<float>& log_values, int wavelength);
 
+  Kind kind_;
   double asymmetry_ = 0;
   std::array<Table, 3> tables_;
 };

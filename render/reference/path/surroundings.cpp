@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
 #include "physics/physics_cpp.h"
 #include "reference/path/sampling.h"
 
@@ -35,6 +34,7 @@ Surroundings::Surroundings(const RenderRequest& request, double sun_radius_rad)
   }
   look_ = request.planet->ground;
   slope_variance_ = f64::water_slope_variance(look_.wind_m_per_s);
+  if (request.planet->air) beyond_ = f64::night_sky * irradiance_;
   surface_.emplace(request.planet->body, surface_of(request));
   sky_ = {};
 }
@@ -59,7 +59,7 @@ double Surroundings::ground_m(const Ray& ray) const {
 }
 
 glm::dvec3 Surroundings::background_W_per_m2_sr_nm(const glm::dvec3& direction, bool ground) const {
-  if (surface_) return glm::dvec3{0.0};
+  if (surface_) return ground ? glm::dvec3{0.0} : beyond_;
   if (ground) return sky_.below_W_per_m2_sr_nm;
   glm::dvec3 radiance;
   for (int c = 0; c < 3; ++c)

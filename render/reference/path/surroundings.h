@@ -60,6 +60,7 @@ class Surroundings {
   double slope_variance_ = 0;
   Sky sky_;
   glm::dvec3 up_, to_sun_, irradiance_;
+  glm::dvec3 beyond_{0.0};  // over a planet with air: the night sky
   double sun_radius_rad_, one_minus_cos_radius_, solid_angle_sr_ = 0;
 };
 

@@ -39,6 +39,8 @@ struct CfFile {
   Air air(std::size_t time) const;
   ForecastGround ground(std::size_t time) const;
   std::vector<float> terrain_m(std::size_t time) const;
+  void restrict_to(const Region& region, Model& model);
+  void find_water_in(Model& model) const;
   void find_air();
   void find_ground();
   void choose_pressure(Model& model);
@@ -81,18 +83,35 @@ std::vector<float> CfFile::terrain_m(std::size_t time) const {
 
 ForecastGround CfFile::ground(std::size_t time) const {
   ForecastGround ground;
-  if (terrain) {
-    ground.height_m = terrain_m(time);
-    for (float& height : ground.height_m)
-      if (!std::isfinite(height)) height = 0;
-  }
+  if (terrain) ground.height_m = terrain_m(time);
   if (land) {
     const bool percent = land->text("units") == "%";
     ground.water = reader->surface(*land, time);
-    for (float& value : ground.water)
-      value = std::isfinite(value) ? 1 - std::clamp(percent ? value / 100 : value, 0.0f, 1.0f) : 1;
+    for (float& value : ground.water) value = 1 - (percent ? value / 100 : value);
   }
   return ground;
+}
+
+void CfFile::restrict_to(const Region& region, Model& model) {
+  const CellWindow window = window_of({&grid, 1}, region, file->path());
+  model.facts.push_back(window_fact(region, window, *grid));
+  reader->restrict_to(window, grid->around());
+  grid = windowed(grid, window);
+}
+
+void CfFile::find_water_in(Model& model) const {
+  const auto accept = [this](const NcVariable& v) { return reader->is_field(v, roles.z); };
+  model.water = find_water(*file, accept);
+  const bool has_ice =
+      std::ranges::any_of(model.water, [](const WaterVariable& w) { return is_ice(w.species); });
+  for (WaterVariable& water : model.water)
+    if (!has_ice && is_whole_condensate(water)) {
+      water.freezes_below_K = kWholeCondensateFreezes_K;
+      model.assumptions.push_back(water.variable->name +
+                                  " holds liquid and ice: ice below -15 degC is assumed.");
+    }
+  model.cloud_fraction = find_named(*file, names::kCloudFraction, accept);
+  model.droplet_number = find_named(*file, names::kDropletNumber, accept);
 }
 
 void CfFile::find_air() {
@@ -199,7 +218,7 @@ void check_dimensions(const CfFile& cf, const NcVariable& water) {
                    "choose one index first, for example with ncks -d " + cf.file->name(d) + ",0"});
 }
 
-Model model_of(const std::shared_ptr<CfFile>& cf) {
+Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& region) {
   const NcFile& file = *cf->file;
   const NcVariable& first = *first_water(file);
   cf->roles = dimension_roles(file, first);
@@ -208,24 +227,19 @@ Model model_of(const std::shared_ptr<CfFile>& cf) {
   model.file = cf->file;
   check_dimensions(*cf, first);
   FieldReader& reader = *cf->reader;
-  reader = {cf->file, cf->roles.time, cf->roles.y, cf->roles.x, 0, 0};
+  reader.file = cf->file;
+  reader.time = cf->roles.time;
+  reader.y = cf->roles.y;
+  reader.x = cf->roles.x;
   cf->grid = cf_grid(file, cf->roles, reader, first, model.assumptions);
-  model.nx = reader.nx = cf->grid->nx();
-  model.ny = reader.ny = cf->grid->ny();
+  reader.nx = cf->grid->nx();
+  reader.ny = cf->grid->ny();
+  if (region) cf->restrict_to(*region, model);
+  model.nx = reader.nx;
+  model.ny = reader.ny;
   model.nz = int(file.size(cf->roles.z));
   model.utc_ns = cf->times_ns(model);
-  const auto accept = [cf](const NcVariable& v) { return cf->reader->is_field(v, cf->roles.z); };
-  model.water = find_water(file, accept);
-  const bool has_ice =
-      std::ranges::any_of(model.water, [](const WaterVariable& w) { return is_ice(w.species); });
-  for (WaterVariable& water : model.water)
-    if (!has_ice && is_whole_condensate(water)) {
-      water.freezes_below_K = kWholeCondensateFreezes_K;
-      model.assumptions.push_back(water.variable->name +
-                                  " holds liquid and ice: ice below -15 degC is assumed.");
-    }
-  model.cloud_fraction = find_named(file, names::kCloudFraction, accept);
-  model.droplet_number = find_named(file, names::kDropletNumber, accept);
+  cf->find_water_in(model);
   cf->find_air();
   cf->find_ground();
   // `vertical` is part of the CfFile that these ask: a shared pointer would never let go.
@@ -258,10 +272,10 @@ int recognise(const NcFile&) {
   return 1;
 }
 
-std::unique_ptr<Forecast> open_cf(std::shared_ptr<const NcFile> file, bool force) {
+std::unique_ptr<Forecast> open_cf(std::shared_ptr<const NcFile> file, const OpenRequest& request) {
   auto cf = std::make_shared<CfFile>();
   cf->file = std::move(file);
-  return make_forecast(model_of(cf), force);
+  return make_forecast(model_of(cf, request.region), request.force);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ std::unique_ptr<Forecast> open_file(const std::string& path, const OpenRequest& 
   if (!best)
     throw Error({"the file follows no convention that is known", path, "WRF or CF",
                  std::to_string(file->variables().size()) + " variables", ""});
-  return best->open(std::move(file), request.force);
+  return best->open(std::move(file), request);
 }
 
 }  // namespace

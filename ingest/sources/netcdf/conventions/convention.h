@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cell_window.h"
 #include "forecast.h"
 #include "nc_file.h"
 
@@ -14,6 +16,7 @@ struct OpenRequest {
   IoLock io_lock{};
   // Draw what is out of every cloud's range: more than 20 g/m3 of water, or 1 /m of extinction.
   bool force = false;
+  std::optional<Region> region;  // all that is read; the whole file without one
 };
 
 // Recognises the files' convention and opens them. Reads the first time that holds data, so that
@@ -26,7 +29,7 @@ struct Convention {
   const char* name;
   // 0: not this one; the highest wins.
   int (*recognise)(const NcFile& file);
-  std::unique_ptr<Forecast> (*open)(std::shared_ptr<const NcFile> file, bool force);
+  std::unique_ptr<Forecast> (*open)(std::shared_ptr<const NcFile> file, const OpenRequest& request);
 };
 
 // Times of all parts in order. At least one part.

@@ -26,15 +26,30 @@ bool FieldReader::is_surface(const NcVariable& variable) const {
          });
 }
 
-std::vector<float> FieldReader::read(const NcVariable& variable, int z, bool from_top,
-                                     std::size_t time_index, int first, int count) const {
+void FieldReader::restrict_to(const CellWindow& window, bool around) {
+  turn = around ? nx : 0;
+  x0 = window.x0;
+  y0 = window.y0;
+  nx = window.nx;
+  ny = window.ny;
+}
+
+std::vector<float> FieldReader::columns(const NcVariable& variable, int z, bool from_top,
+                                        std::size_t time_index, int first, int count, int x_from,
+                                        int x_count) const {
   const std::size_t rank = variable.dimensions.size();
   std::vector<std::size_t> start(rank, 0), counts(rank, 1);
   for (std::size_t d = 0; d < rank; ++d) {
     const int id = variable.dimensions[d];
     if (id == time) start[d] = time_index;
-    if (id == y) counts[d] = std::size_t(ny);
-    if (id == x) counts[d] = std::size_t(nx);
+    if (id == y) {
+      start[d] = std::size_t(y0);
+      counts[d] = std::size_t(ny);
+    }
+    if (id == x) {
+      start[d] = std::size_t(x_from);
+      counts[d] = std::size_t(x_count);
+    }
     if (id == z) {
       counts[d] = std::size_t(count);
       start[d] = std::size_t(from_top ? int(file->size(z)) - first - count : first);
@@ -50,7 +65,7 @@ std::vector<float> FieldReader::read(const NcVariable& variable, int z, bool fro
       if (id == dimension) stride[std::size_t(axis)] = step;
     step *= counts[d];
   }
-  const std::size_t row = std::size_t(nx), plane = row * std::size_t(ny);
+  const std::size_t row = std::size_t(x_count), plane = row * std::size_t(ny);
   const bool in_order = stride[2] == 1 && stride[1] == row && stride[0] == (z < 0 ? 0 : plane);
   if (in_order && (!from_top || count == 1)) return values;
   std::vector<float> ordered(values.size());
@@ -62,6 +77,23 @@ std::vector<float> FieldReader::read(const NcVariable& variable, int z, bool fro
             values[from + j * stride[1] + i * stride[2]];
   }
   return ordered;
+}
+
+// Columns across the end of the longitudes are two reads, side by side.
+std::vector<float> FieldReader::read(const NcVariable& variable, int z, bool from_top,
+                                     std::size_t time_index, int first, int count) const {
+  const int west = turn > 0 ? std::min(nx, turn - x0) : nx, east = nx - west;
+  std::vector<float> a = columns(variable, z, from_top, time_index, first, count, x0, west);
+  if (east == 0) return a;
+  const std::vector<float> b = columns(variable, z, from_top, time_index, first, count, 0, east);
+  std::vector<float> all;
+  all.reserve(a.size() + b.size());
+  auto from_a = a.begin();
+  for (auto from_b = b.begin(); from_b != b.end(); from_b += east, from_a += west) {
+    all.insert(all.end(), from_a, from_a + west);
+    all.insert(all.end(), from_b, from_b + east);
+  }
+  return all;
 }
 
 std::vector<float> FieldReader::levels(const NcVariable& variable, int z, bool from_top,

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "cell_window.h"
 #include "nc_file.h"
 
 namespace nepho::netcdf {
@@ -13,6 +14,11 @@ struct FieldReader {
   std::shared_ptr<const NcFile> file;
   int time = -1, y = -1, x = -1;  // dimensions; time may be absent
   int nx = 0, ny = 0;             // columns used: nx leaves out a repeated column of a whole turn
+  int x0 = 0, y0 = 0;             // the first of them
+  int turn = 0;                   // columns after which the first follows; 0: never
+
+  // Only the window's columns of a grid as wide as this reader's are read from now on.
+  void restrict_to(const CellWindow& window, bool around);
 
   // Has `z`, y and x, and nothing else of more than one index but time.
   bool is_field(const NcVariable& variable, int z) const;
@@ -29,6 +35,9 @@ struct FieldReader {
  private:
   std::vector<float> read(const NcVariable& variable, int z, bool from_top, std::size_t time_index,
                           int first, int count) const;
+  std::vector<float> columns(const NcVariable& variable, int z, bool from_top,
+                             std::size_t time_index, int first, int count, int x_from,
+                             int x_count) const;
 };
 
 }  // namespace nepho::netcdf

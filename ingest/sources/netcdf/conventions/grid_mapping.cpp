@@ -8,7 +8,6 @@
 #include "conventions/names.h"
 #include "conventions/vertical.h"
 #include "core/error.h"
-#include "units/constants.h"
 
 namespace nepho::netcdf {
 namespace {
@@ -98,15 +97,6 @@ std::vector<double> map_axis(const NcFile& file, const NcVariable& axis, bool ro
   return values;
 }
 
-// A plane that touches the planet at 0 N 0 E.
-MapSpec nowhere() {
-  MapSpec spec;
-  spec.kind = MapKind::kTransverseMercator;
-  spec.equatorial_m = constants::kWgs84Equatorial_m;
-  spec.polar_m = constants::kWgs84Polar_m;
-  return spec;
-}
-
 void centre(std::vector<double>& values) {
   const double middle = 0.5 * (values.front() + values.back());
   for (double& value : values) value -= middle;
@@ -154,11 +144,11 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const NcFile& file, const Dimensio
   const auto longitude = degrees(file, x, names::kLongitude);
   if (latitude && longitude) return axes_grid(*latitude, *longitude, where);
   if (unit_of(x, kLength).fits && unit_of(y, kLength).fits) {
-    assumptions.push_back("The grid has no place on the planet: it is laid around 0 N 0 E.");
+    assumptions.push_back(kNoPlace);
     std::vector<double> x_m = map_axis(file, x, false), y_m = map_axis(file, y, false);
     centre(x_m);
     centre(y_m);
-    return map_grid(x_m, y_m, MapProjection(nowhere()));
+    return plane_grid(x_m, y_m);
   }
   throw Error({"the grid has no place", where, "latitudes and longitudes in degrees, or m of a map",
                "units \"" + y.text("units") + "\" and \"" + x.text("units") + "\"", ""});

@@ -5,12 +5,14 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "units/constants.h"
 
 namespace nepho::netcdf {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kOfStep = 0.01;            // exactness asked of a whole turn
+constexpr double kMostTurned = 0.01;        // of all cells: grids with a fold have a row
 constexpr double kLatitudeRounding = 1e-3;  // deg beyond a pole that is rounding
 
 [[noreturn]] void refuse_axis(const std::string& where, const char* expected,
@@ -24,6 +26,25 @@ void check_latitudes(std::vector<double>& latitude_deg, const std::string& where
       refuse_axis(where, "latitudes from -90 to 90 degrees", std::to_string(latitude));
     latitude = std::clamp(latitude, -90.0, 90.0);
   }
+}
+
+// The side that each four neighbouring centres turn to, seen from above: the same for all of a
+// grid. More than a few that do not, or that lie on a line, and the coordinates are no grid.
+void check_turn(int nx, int ny, const std::vector<glm::dvec3>& centre, const std::string& where) {
+  std::size_t left = 0, right = 0, flat = 0;
+  for (int j = 0; j + 1 < ny; ++j)
+    for (int i = 0; i + 1 < nx; ++i) {
+      const auto at = [&](int a, int b) {
+        return centre[std::size_t(j + b) * std::size_t(nx) + std::size_t(i + a)];
+      };
+      const double turn = glm::dot(glm::cross(at(1, 1) - at(0, 0), at(0, 1) - at(1, 0)), at(0, 0));
+      (turn > 0 ? left : turn < 0 ? right : flat) += 1;
+    }
+  const std::size_t wrong = std::min(left, right) + flat, all = left + right + flat;
+  if (double(wrong) > kMostTurned * double(all))
+    refuse_axis(where, "cells that all turn to one side",
+                std::to_string(wrong) + " of " + std::to_string(all) +
+                    " that turn to the other, or have no area");
 }
 
 // Half way between centres; half a step beyond both ends. One centre: a cell of one degree.
@@ -81,6 +102,7 @@ class PointsGrid : public HorizontalGrid {
   int nx() const override { return nx_; }
   int ny() const override { return ny_; }
   bool around() const override { return false; }
+  const std::vector<glm::dvec3>& directions() const { return direction_; }  // of centres
   glm::dvec2 lat_lon_deg(double x, double y) const override {
     const double u = x - 0.5, v = y - 0.5;  // in centres
     const double i = std::clamp(std::floor(u), 0.0, nx_ - 2.0);
@@ -192,12 +214,22 @@ std::unique_ptr<HorizontalGrid> points_grid(int nx, int ny, std::vector<double> 
 #ifdef NEPHO_MUTANT_LONGITUDE_180
   for (double& longitude : longitude_deg) longitude += 180;
 #endif
-  return std::make_unique<PointsGrid>(nx, ny, latitude_deg, std::move(longitude_deg));
+  auto grid = std::make_unique<PointsGrid>(nx, ny, latitude_deg, std::move(longitude_deg));
+  check_turn(nx, ny, grid->directions(), where);
+  return grid;
 }
 
 std::unique_ptr<HorizontalGrid> map_grid(std::vector<double> x_m, std::vector<double> y_m,
                                          const MapProjection& projection) {
   return std::make_unique<MapGrid>(x_m, y_m, projection);
+}
+
+std::unique_ptr<HorizontalGrid> plane_grid(std::vector<double> x_m, std::vector<double> y_m) {
+  MapSpec spec;
+  spec.kind = MapKind::kTransverseMercator;
+  spec.equatorial_m = constants::kWgs84Equatorial_m;
+  spec.polar_m = constants::kWgs84Polar_m;
+  return map_grid(std::move(x_m), std::move(y_m), MapProjection(spec));
 }
 
 }  // namespace nepho::netcdf

@@ -30,10 +30,16 @@ std::unique_ptr<HorizontalGrid> axes_grid(std::vector<double> latitude_deg,
                                           const std::string& where);
 
 // Centres in two dimensions, on the sphere of directions: bilinear between unit vectors, half a
-// cell beyond the outermost. Needs 2 x 2 cells. Throws Error as above.
+// cell beyond the outermost. Needs 2 x 2 cells. Throws Error as above, and
+// where more than 1 % of the cells turn to the other side or have no area.
 std::unique_ptr<HorizontalGrid> points_grid(int nx, int ny, std::vector<double> latitude_deg,
                                             std::vector<double> longitude_deg,
                                             const std::string& where);
+
+// A plane that touches the planet at 0 N 0 E, for data in metres without a place.
+std::unique_ptr<HorizontalGrid> plane_grid(std::vector<double> x_m, std::vector<double> y_m);
+inline constexpr const char* kNoPlace =
+    "The grid has no place on the planet: it is laid around 0 N 0 E.";
 
 // A map: centres of cells at x_m[i], y_m[j] of the projection.
 std::unique_ptr<HorizontalGrid> map_grid(std::vector<double> x_m, std::vector<double> y_m,

@@ -73,6 +73,12 @@ class JoinedForecast : public Forecast {
     facts.insert(facts.end(), facts_.begin(), facts_.end());
     return facts;
   }
+  std::vector<VariableBytes> bytes_read() const override {
+    std::vector<VariableBytes> all;
+    for (const auto& part : parts_)
+      for (VariableBytes& bytes : part->bytes_read()) all.push_back(std::move(bytes));
+    return all;
+  }
 
  private:
   const Place& at(std::size_t time) const { return places_.at(time); }

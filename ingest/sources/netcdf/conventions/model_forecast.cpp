@@ -17,6 +17,9 @@ namespace {
 
 constexpr double kLargestContent_kg_per_m3 = 20e-3;  // four times a hailstorm's
 constexpr double kLargestExtinction_per_m = 1;
+constexpr float kHighestGround_m = 12000;
+constexpr double kColdest_K = 100, kWarmest_K = 400;        // of air anywhere
+constexpr double kLowest_m = -15000, kHighest_m = 1000000;  // of a model's layers
 constexpr double kWholeTroposphere_m = 15000;  // data that end below may cut clouds off
 
 std::string text(const char* format, double a, double b = 0) {
@@ -48,14 +51,17 @@ class ModelForecast : public Forecast {
   std::shared_ptr<const HorizontalGrid> grid(std::size_t time) const override {
     return model_.grid(index_.at(time));
   }
-  ForecastGround ground(std::size_t time) const override {
-    return model_.ground ? model_.ground(index_.at(time)) : ForecastGround{};
-  }
+  ForecastGround ground(std::size_t time) const override { return ground_of(index_.at(time)); }
   glm::dvec2 height_range_m() const override { return height_range_m_; }
   double thinnest_layer_m() const override { return thinnest_m_; }
   double liquid_radius_m() const override { return radius_m_; }
   std::vector<std::string> assumptions() const override { return model_.assumptions; }
   std::vector<std::string> facts() const override { return model_.facts; }
+  std::vector<VariableBytes> bytes_read() const override {
+    std::vector<VariableBytes> all;
+    for (const NcVariable& v : model_.file->variables()) all.push_back(model_.file->bytes_read(v));
+    return all;
+  }
 
   // What the opening has read is handed out once, not read again.
   ForecastColumns columns(std::size_t time) const override {
@@ -79,6 +85,7 @@ class ModelForecast : public Forecast {
   void check(const WaterStatistics& statistics) const;
   CloudSetting setting(std::size_t index, const HorizontalGrid& grid) const;
   Loaded load(std::size_t time) const;
+  ForecastGround ground_of(std::size_t index) const;
 
   Model model_;
   bool force_;
@@ -111,6 +118,18 @@ void ModelForecast::order_times() {
   for (const std::size_t i : index_) times_s_.push_back(double(ns(i) - origin_ns_) / 1e9);
 }
 
+// Missing places, and heights that no planet's surface has (fill values nobody named), are sea.
+ForecastGround ModelForecast::ground_of(std::size_t index) const {
+  ForecastGround ground = model_.ground ? model_.ground(index) : ForecastGround{};
+  for (float& height : ground.height_m)
+    if (!(std::abs(height) < kHighestGround_m)) height = 0;
+  for (float& water : ground.water)
+    water = water >= 0 && water <= 1 ? water
+            : std::abs(water) < 2    ? std::clamp(water, 0.f, 1.f)
+                                     : 1;
+  return ground;
+}
+
 CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& grid) const {
   CloudSetting setting;
   if (const NcVariable* fraction = model_.cloud_fraction) {
@@ -125,7 +144,7 @@ CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& gri
     if (unit == "cm-3" || unit == "1/cm3" || unit == "cm**-3")
       for (float& value : setting.number) value *= 1e6f;
   }
-  if (model_.ground) setting.water = model_.ground(index).water;
+  setting.water = ground_of(index).water;
   if (has_ice_)
     for (int j = 0; j < model_.ny; ++j)
       for (int i = 0; i < model_.nx; ++i)
@@ -164,6 +183,12 @@ Loaded ModelForecast::load(std::size_t time) const {
 }
 
 void ModelForecast::check(const WaterStatistics& s) const {
+  if (s.coldest_K < kColdest_K || s.warmest_K > kWarmest_K) {
+    const double found_K = s.coldest_K < kColdest_K ? s.coldest_K : s.warmest_K;
+    throw Error({"no cloud is as cold or as warm", model_.file->path(), "air from 100 to 400 K",
+                 text("%.4g K where there is water", found_K),
+                 "the units may be wrong (degC under the name K)"});
+  }
   if (force_) return;
   if (s.highest_content_kg_per_m3 > kLargestContent_kg_per_m3)
     throw Error({"there is more water than any cloud holds",
@@ -203,6 +228,10 @@ void ModelForecast::open_first_water() {
 
 void ModelForecast::say(const WaterStatistics& s) {
   auto& facts = model_.facts;
+  // The range of EGM2008: Pavlis et al. (2012), doi:10.1029/2011JB008916.
+  model_.assumptions.push_back(
+      "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to "
+      "86 m above it.");
   std::string names;
   for (const WaterVariable& w : model_.water)
     names += (names.empty() ? "" : ", ") + w.variable->name + " (" + name_of(w.species) +
@@ -272,6 +301,10 @@ void ModelForecast::measure_heights() {
       high = std::max(high, double(other[n * (nz + 1) + nz]));
     }
   }
+  if (!(low > kLowest_m && high < kHighest_m))
+    throw Error({"the layers are in no atmosphere", model_.file->path(),
+                 text("heights from %.0f to %.0f m", kLowest_m, kHighest_m),
+                 text("%.6g to %.6g m", low, high), "the units of the heights may be wrong"});
   height_range_m_ = {low, high};
   thinnest_m_ = thinnest_cloudy_layer_m(columns);
   if (high < kWholeTroposphere_m)

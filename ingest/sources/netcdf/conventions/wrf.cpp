@@ -10,9 +10,10 @@
 #include "conventions/convention.h"
 #include "conventions/field_reader.h"
 #include "conventions/horizontal.h"
+#include "conventions/levels.h"
 #include "conventions/model.h"
+#include "conventions/wrf_grid.h"
 #include "core/error.h"
-#include "level_heights.h"
 #include "nc_time.h"
 #include "units/constants.h"
 
@@ -21,11 +22,8 @@ namespace {
 
 // WRF's own constants (share/module_model_constants.F).
 constexpr double kGravity_m_per_s2 = 9.81;
-constexpr double kSphere_m = 6370000;
 constexpr double kThetaBase_K = 300;
 constexpr int kWsm3 = 3;  // MP_PHYSICS of the scheme with one condensate
-
-constexpr double kMapAgreement_deg = 1e-3;
 
 int dimension(const NcFile& file, const std::string& name) {
   const auto& all = file.dimensions();
@@ -39,7 +37,7 @@ class WrfFile {
   explicit WrfFile(std::shared_ptr<const NcFile> file);
 
   // Hooks hold `self`.
-  static Model model(const std::shared_ptr<WrfFile>& self);
+  static Model model(const std::shared_ptr<WrfFile>& self, const std::optional<Region>& region);
 
  private:
   const NcVariable& need(const char* name) const;
@@ -50,18 +48,17 @@ class WrfFile {
   Air air(std::size_t time) const;
   ForecastGround ground(std::size_t time) const;
   std::shared_ptr<const HorizontalGrid> grid(std::size_t time) const;
-  std::shared_ptr<const HorizontalGrid> make_grid(std::size_t time) const;
+  bool moves() const;
+  void restrict_to(const Region& region, Model& model);
   std::vector<std::int64_t> times_ns(Model& model) const;
-  std::optional<MapProjection> projection() const;
   void find_condensate(Model& model) const;
-  void compare_with_map(const HorizontalGrid& grid, Model& model) const;
   double interface_m(double geopotential, double surface_geopotential) const;
 
   std::shared_ptr<const NcFile> file_;
-  FieldReader reader_;
+  FieldReader reader_, whole_;  // of the region, of the whole domain
   int z_ = -1, z_staggered_ = -1;
   mutable std::mutex mutex_;
-  mutable std::map<std::size_t, std::shared_ptr<const HorizontalGrid>> grids_;
+  mutable std::map<std::size_t, WrfGrid> grids_;
 };
 
 WrfFile::WrfFile(std::shared_ptr<const NcFile> file) : file_(std::move(file)) {
@@ -86,6 +83,7 @@ WrfFile::WrfFile(std::shared_ptr<const NcFile> file) : file_(std::move(file)) {
          "bottom_top_stag one more than bottom_top",
          std::to_string(file_->size(z_staggered_)) + " and " + std::to_string(file_->size(z_)),
          ""});
+  whole_ = reader_;
 }
 
 const NcVariable& WrfFile::need(const char* name) const {
@@ -123,16 +121,7 @@ std::vector<float> WrfFile::interfaces_m(std::size_t time) const {
     for (std::size_t n = 0; n < cells; ++n)
       result[n * std::size_t(levels) + k] =
           float(interface_m(double(phi[k * cells + n]), double(phi[n])));
-  make_rising(result, std::size_t(levels));
-#ifdef NEPHO_MUTANT_FLIPPED_LEVELS
-  for (std::size_t n = 0; n < cells; ++n) {
-    float* column = &result[n * std::size_t(levels)];
-    const float low = column[0], high = column[levels - 1];
-    std::reverse(column, column + levels);
-    for (int k = 0; k < levels; ++k) column[k] = low + high - column[k];
-  }
-#endif
-  return result;
+  return rising_interfaces(std::move(result), std::size_t(levels), file_->path() + " [PH, PHB]");
 }
 
 glm::dvec2 WrfFile::height_range_m(std::size_t time) const {
@@ -172,90 +161,33 @@ ForecastGround WrfFile::ground(std::size_t time) const {
   return ground;
 }
 
+bool WrfFile::moves() const {
+  const NcVariable* latitude = file_->find("XLAT");
+  return latitude &&
+         std::ranges::find(latitude->dimensions, reader_.time) != latitude->dimensions.end();
+}
+
+// Rows and columns that are in the region at any time, so that all times have the same number.
+void WrfFile::restrict_to(const Region& region, Model& model) {
+  std::vector<std::shared_ptr<const HorizontalGrid>> places;
+  for (std::size_t time = 0; time < (moves() ? file_->size(reader_.time) : 1); ++time)
+    places.push_back(grid(time));
+  const CellWindow window = window_of(places, region, file_->path());
+  model.facts.push_back(window_fact(region, window, *places.front()));
+  for (auto& [time, place] : grids_) place.cells = windowed(place.cells, window);
+  reader_.restrict_to(window, false);
+}
+
 // Grids are few and small; a moving nest has one per time.
 std::shared_ptr<const HorizontalGrid> WrfFile::grid(std::size_t time) const {
-  const NcVariable* latitude = file_->find("XLAT");
-  const bool moves = latitude && std::ranges::find(latitude->dimensions, reader_.time) !=
-                                     latitude->dimensions.end();
-  const std::size_t key = moves ? time : 0;
+  const std::size_t key = moves() ? time : 0;
   {
     const std::lock_guard guard(mutex_);
-    if (const auto at = grids_.find(key); at != grids_.end()) return at->second;
+    if (const auto at = grids_.find(key); at != grids_.end()) return at->second.cells;
   }
-  std::shared_ptr<const HorizontalGrid> made = make_grid(key);
+  WrfGrid made = wrf_grid(whole_, key);
   const std::lock_guard guard(mutex_);
-  return grids_.emplace(key, std::move(made)).first->second;
-}
-
-std::shared_ptr<const HorizontalGrid> WrfFile::make_grid(std::size_t time) const {
-  const NcVariable *latitude = file_->find("XLAT"), *longitude = file_->find("XLONG");
-  if (latitude && longitude && reader_.nx > 1 && reader_.ny > 1) {
-    const auto doubles = [](const std::vector<float>& v) {
-      return std::vector<double>(v.begin(), v.end());
-    };
-    return points_grid(reader_.nx, reader_.ny, doubles(reader_.surface(*latitude, time)),
-                       doubles(reader_.surface(*longitude, time)),
-                       file_->path() + " [XLAT, XLONG]");
-  }
-  const auto map = projection();
-  const auto lat = file_->number("CEN_LAT"), lon = file_->number("CEN_LON");
-  const auto dx = file_->number("DX"), dy = file_->number("DY");
-  if (!map || !lat || !lon || !dx || !dy || !(*dx > 0) || !(*dy > 0))
-    throw Error({"the WRF file does not say where its cells lie", file_->path(),
-                 "XLAT and XLONG, or MAP_PROJ with its attributes", "neither", ""});
-  const glm::dvec2 centre = map->map_m({*lat, *lon});
-  std::vector<double> x, y;
-  for (int i = 0; i < reader_.nx; ++i) x.push_back(centre.x + *dx * (i + 0.5 - 0.5 * reader_.nx));
-  for (int j = 0; j < reader_.ny; ++j) y.push_back(centre.y + *dy * (j + 0.5 - 0.5 * reader_.ny));
-  return map_grid(x, y, *map);
-}
-
-std::optional<MapProjection> WrfFile::projection() const {
-  const auto kind = file_->number("MAP_PROJ"), lat1 = file_->number("TRUELAT1");
-  const auto lon = file_->number("STAND_LON");
-  if (!kind || !lat1 || !lon) return {};
-  MapSpec spec;
-  spec.equatorial_m = spec.polar_m = kSphere_m;
-  spec.true_latitude1_deg = *lat1;
-  spec.true_latitude2_deg = file_->number("TRUELAT2").value_or(*lat1);
-  spec.central_longitude_deg = *lon;
-  if (*kind == 1) {
-    // A second true latitude out of range stands for a tangent cone.
-    if (!(std::abs(spec.true_latitude2_deg) < 90)) spec.true_latitude2_deg = *lat1;
-    spec.kind = MapKind::kLambertConformal;
-  } else if (*kind == 2) {
-    spec.kind = MapKind::kPolarStereographic;
-  } else if (*kind == 3) {
-    spec.kind = MapKind::kMercator;
-  } else {
-    return {};  // 0: idealised, without a place; 6: latitudes and longitudes, maybe rotated
-  }
-  try {
-    return MapProjection(spec);
-  } catch (const Error&) {
-    return {};
-  }
-}
-
-// XLAT and XLONG against the map that the attributes name, laid through the first cell.
-void WrfFile::compare_with_map(const HorizontalGrid& grid, Model& model) const {
-  const auto map = projection();
-  const auto dx = file_->number("DX"), dy = file_->number("DY");
-  if (!map || !dx || !dy || !file_->find("XLAT")) return;
-  const glm::dvec2 first = map->map_m(grid.lat_lon_deg(0.5, 0.5));
-  double worst = 0;
-  for (int j = 0; j < reader_.ny; ++j)
-    for (int i = 0; i < reader_.nx; ++i) {
-      const glm::dvec2 file = grid.lat_lon_deg(i + 0.5, j + 0.5);
-      const glm::dvec2 ours = map->lat_lon_deg(first + glm::dvec2(i * *dx, j * *dy));
-      const double turn = std::remainder(file.y - ours.y, 360.0);
-      worst = std::max({worst, std::abs(file.x - ours.x),
-                        std::abs(turn) * std::cos(file.x * 0.017453292519943295)});
-    }
-  char text[200];
-  std::snprintf(text, sizeof text, "XLAT and XLONG %s the map of the attributes: %.1e deg.",
-                worst <= kMapAgreement_deg ? "agree with" : "DIFFER from", worst);
-  model.facts.push_back(text);
+  return grids_.emplace(key, std::move(made)).first->second.cells;
 }
 
 std::vector<std::int64_t> WrfFile::times_ns(Model& model) const {
@@ -308,18 +240,23 @@ void WrfFile::find_condensate(Model& model) const {
   model.droplet_number = field("QNCLOUD");
 }
 
-Model WrfFile::model(const std::shared_ptr<WrfFile>& self) {
+Model WrfFile::model(const std::shared_ptr<WrfFile>& self, const std::optional<Region>& region) {
   const NcFile& file = *self->file_;
   Model model;
   model.convention = "WRF-ARW";
   model.file = self->file_;
-  model.nx = self->reader_.nx;
-  model.ny = self->reader_.ny;
   model.nz = int(file.size(self->z_));
   self->find_condensate(model);
   for (const char* name : {"PH", "PHB", "P", "PB", "T"}) self->need(name);
   model.utc_ns = self->times_ns(model);
-  self->compare_with_map(*self->grid(0), model);
+  const auto cells = self->grid(0);
+  if (!self->grids_.at(0).placed)
+    model.assumptions.push_back(kNoPlace);
+  else if (std::string fact = compare_with_map(file, *cells); !fact.empty())
+    model.facts.push_back(std::move(fact));
+  if (region) self->restrict_to(*region, model);
+  model.nx = self->reader_.nx;
+  model.ny = self->reader_.ny;
   if (!file.find("QVAPOR"))
     model.assumptions.push_back("There is no QVAPOR: the air is taken as dry (1 % of density).");
   model.field = [self](const NcVariable& variable, std::size_t time) {
@@ -338,8 +275,9 @@ int recognise(const NcFile& file) {
   return file.find("PHB") && file.find("PH") && dimension(file, "bottom_top_stag") >= 0 ? 90 : 0;
 }
 
-std::unique_ptr<Forecast> open_wrf(std::shared_ptr<const NcFile> file, bool force) {
-  return make_forecast(WrfFile::model(std::make_shared<WrfFile>(std::move(file))), force);
+std::unique_ptr<Forecast> open_wrf(std::shared_ptr<const NcFile> file, const OpenRequest& request) {
+  return make_forecast(WrfFile::model(std::make_shared<WrfFile>(std::move(file)), request.region),
+                       request.force);
 }
 
 }  // namespace
