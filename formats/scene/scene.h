@@ -100,7 +100,7 @@ struct PathGoals {
   double noise = 0;  // rms of the pixels' standard errors over mean luminance; 0: by `samples`
   PathLevels levels = PathLevels::kFinest;  // or the bricks that the march would have
   double host_mib = 4096;                   // memory for the finest
-  int exact_orders = 2;  // scatterings with a tabled phase function (PathSettings); -1: all
+  int exact_orders = -1;  // scatterings with a tabled phase function (PathSettings); -1: all
 };
 
 struct RenderSettings {

@@ -127,8 +127,9 @@ void add_reference_options(CLI::App& command, RenderOptions& o) {
       .add_option("--levels", o.levels, "reference: finest bricks, or resident (as the march has)")
       ->group(group);
   command
-      .add_option("--exact-orders", o.exact_orders,
-                  "reference: scatterings that keep a Mie phase function (2); -1 = all, noisy")
+      .add_option(
+          "--exact-orders", o.exact_orders,
+          "reference: scatterings that keep a Mie phase function (all); 2: less noise, a bias")
       ->group(group);
   command.add_option("--host-mib", o.host_mib, "reference: memory for the finest bricks (4096)")
       ->group(group);

@@ -44,12 +44,15 @@ class Progress {
 };
 
 std::string line_of(const PathPicture& picture, const PathGoals& goals) {
-  char text[256];
+  char text[320], smoothed[64] = "";
+  if (goals.exact_orders >= 0)
+    std::snprintf(smoothed, sizeof smoothed, "; Mie smoothed after %d scatterings",
+                  goals.exact_orders);
   std::snprintf(text, sizeof text,
                 "error (measured): noise %.2g %% (rms of the pixels' standard errors over mean "
-                "luminance, %u paths a pixel%s; %s bricks)",
+                "luminance, %u paths a pixel%s; %s bricks%s)",
                 100 * picture.noise, picture.samples, picture.stopped ? ", stopped early" : "",
-                goals.levels == PathLevels::kFinest ? "finest" : "resident");
+                goals.levels == PathLevels::kFinest ? "finest" : "resident", smoothed);
   return text;
 }
 

@@ -58,7 +58,11 @@ Spot spot_of(const Leaves::Leaf& leaf, const ChartRay::Block& block, const glm::
 double Leaves::Leaf::extinction_per_m(const ChartRay::Block& block, const glm::dvec3& at) const {
   if (kind != NodeKind::kBrick) return most_per_m;
   const Spot spot = spot_of(*this, block, at);
-  return decoded(*brick, interpolated(brick->codes, spot.first, spot.f));
+  const double extinction = decoded(*brick, interpolated(brick->codes, spot.first, spot.f));
+#if defined(NEPHO_MUTANT_HALF_EXTINCTION)
+  return 0.5 * extinction;
+#endif
+  return extinction;
 }
 
 double Leaves::Leaf::ice_part(const ChartRay::Block& block, const glm::dvec3& at) const {

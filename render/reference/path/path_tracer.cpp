@@ -101,6 +101,9 @@ PathSample PathTracer::sample(const Ray& ray, Random& random) const {
   while (path.alive) {
     const double ground_m = around_.ground_m(path.ray);
     const PhaseSampler* phase = next_scattering(path, ground_m);
+#if defined(NEPHO_MUTANT_BOUNCE_CAP)
+    if (path.result.scatterings > 64) break;
+#endif
     if (phase) {
       light_at_collision(path, *phase);
       scatter(path, *phase);
@@ -131,7 +134,11 @@ const PhaseSampler* PathTracer::next_scattering(Path& path, double ground_m) con
   if (hit.volume < 0) return nullptr;
   path.ray.origin_m += hit.t_m * path.ray.direction;
   ++path.result.scatterings;
+#if defined(NEPHO_MUTANT_NO_CO_ALBEDO)
+  const glm::dvec3 lost{0.0};
+#else
   const glm::dvec3& lost = co_albedos_[std::size_t(hit.volume)];
+#endif
   // By the co-albedo: 1 - 4e-7 has few digits left, and 4e-7 all of them.
   const double absorbed = std::min({lost.r, lost.g, lost.b});
   if (absorbed > 0) {
