@@ -8,6 +8,6 @@ build=${1:-build/release}
 [ $# -gt 0 ] && shift
 rows=$(mktemp)
 trap 'rm -f "$rows" "$rows.md"' EXIT
-NEPHO_ACCURACY_OUT=$rows ctest --test-dir "$build" --output-on-failure -LE mutant "$@"
+NEPHO_ACCURACY_OUT=$rows ctest --test-dir "$build" --output-on-failure -LE 'mutant|slow' "$@"
 LC_ALL=C awk -f tools/accuracy_tables.awk "$rows" docs/accuracy.md > "$rows.md"
 cat "$rows.md" > docs/accuracy.md
