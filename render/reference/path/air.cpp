@@ -76,16 +76,9 @@ void PathAir::follow(const Ray& ray, double t_max_m, int wavelength, Visit&& vis
 PathAir::Collision PathAir::collide(const Ray& ray, double t_max_m, int wavelength,
                                     Random& random) const {
   Collision found;
-  double left = random.depth();
+  Trials trials(random);
   follow(ray, t_max_m, wavelength, [&](double t_m, double t1_m, double most_per_m) {
-    while (true) {
-      const double step_m = left / most_per_m;
-      if (step_m >= t1_m - t_m) {
-        left -= most_per_m * (t1_m - t_m);
-        return true;
-      }
-      t_m += step_m;
-      left = random.depth();
+    while (trials.next(t_m, t1_m, most_per_m)) {
       const AirDensity density = air_density(air_, height_m(ray, t_m));
       double which = random.uniform() * most_per_m;
       if (which >= density.extinction_per_m[wavelength]) continue;
@@ -97,25 +90,21 @@ PathAir::Collision PathAir::collide(const Ray& ray, double t_max_m, int waveleng
         found.event = Event::kAerosol;
       return false;
     }
+    return true;
   });
   return found;
 }
 
 double PathAir::transmittance(const Ray& ray, double t_max_m, int wavelength,
                               Random& random) const {
-  double passed = 1, left = random.depth();
+  double passed = 1;
+  Trials trials(random);
   follow(ray, t_max_m, wavelength, [&](double t_m, double t1_m, double most_per_m) {
-    while (true) {
-      const double step_m = left / most_per_m;
-      if (step_m >= t1_m - t_m) {
-        left -= most_per_m * (t1_m - t_m);
-        return true;
-      }
-      t_m += step_m;
-      left = random.depth();
+    while (trials.next(t_m, t1_m, most_per_m)) {
       passed *= 1 - air_density(air_, height_m(ray, t_m)).extinction_per_m[wavelength] / most_per_m;
       if (!(passed > 1e-9)) return false;
     }
+    return true;
   });
   return std::max(passed, 0.0);
 }

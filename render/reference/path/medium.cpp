@@ -25,20 +25,13 @@ template <class Kind>
 PathMedium::Collision PathMedium::collide_in(std::size_t volume, const Kind& ray, double t_max_m,
                                              Random& random) const {
   Collision found;
-  double left = random.depth();  // of bound, until the next trial
+  Trials trials(random);
   follow(*volumes_[volume], ray, t_max_m,
          [&](double t0_m, double t1_m, int root, const ChartRay::Block& block,
              const Leaves::Leaf& leaf) {
            if (leaf.kind == NodeKind::kEmpty) return true;
            double t_m = t0_m;
-           while (true) {
-             const double step_m = left / leaf.most_per_m;
-             if (step_m >= t1_m - t_m) {
-               left -= leaf.most_per_m * (t1_m - t_m);
-               return true;
-             }
-             t_m += step_m;
-             left = random.depth();
+           while (trials.next(t_m, t1_m, leaf.most_per_m)) {
              if (leaf.kind != NodeKind::kConstant) {
                const glm::dvec3 at = ray.cells_at(root, t_m);
                const double extinction = leaf.extinction_per_m(block, at);
@@ -51,6 +44,7 @@ PathMedium::Collision PathMedium::collide_in(std::size_t volume, const Kind& ray
              found.volume = int(volume);
              return false;
            }
+           return true;
          });
   return found;
 }
@@ -69,7 +63,7 @@ PathMedium::Collision PathMedium::collide(const Ray& ray, double t_max_m, Random
 template <class Kind>
 double PathMedium::pass(std::size_t volume, const Kind& ray, double t_max_m, double passed,
                         Random& random) const {
-  double left = random.depth();
+  Trials trials(random);
   follow(*volumes_[volume], ray, t_max_m,
          [&](double t0_m, double t1_m, int root, const ChartRay::Block& block,
              const Leaves::Leaf& leaf) {
@@ -78,14 +72,7 @@ double PathMedium::pass(std::size_t volume, const Kind& ray, double t_max_m, dou
              passed *= std::exp(-leaf.most_per_m * (t1_m - t0_m));
            } else {
              double t_m = t0_m;
-             while (true) {
-               const double step_m = left / leaf.most_per_m;
-               if (step_m >= t1_m - t_m) {
-                 left -= leaf.most_per_m * (t1_m - t_m);
-                 break;
-               }
-               t_m += step_m;
-               left = random.depth();
+             while (trials.next(t_m, t1_m, leaf.most_per_m)) {
                const double extinction = leaf.extinction_per_m(block, ray.cells_at(root, t_m));
                if (extinction > leaf.most_per_m * kRounding) ++violations_;
                passed *= std::max(0.0, 1 - extinction / leaf.most_per_m);

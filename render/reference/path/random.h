@@ -38,4 +38,27 @@ class Random {
   int used_ = 4;
 };
 
+// Trials of a Poisson process along a ray, piece by piece, each with its own bound of the rate:
+// what is left of a free path carries over from one piece to the next.
+class Trials {
+ public:
+  explicit Trials(Random& random) : random_(random), left_(random.depth()) {}
+
+  // Moves t_m to the next trial; false where there is none before end_m.
+  bool next(double& t_m, double end_m, double most_per_m) {
+    const double step_m = left_ / most_per_m;
+    if (step_m >= end_m - t_m) {
+      left_ -= most_per_m * (end_m - t_m);
+      return false;
+    }
+    t_m += step_m;
+    left_ = random_.depth();
+    return true;
+  }
+
+ private:
+  Random& random_;
+  double left_;  // optical depth of the bound
+};
+
 }  // namespace nepho
