@@ -205,6 +205,10 @@ reference_is_drawn() {
   awk '/noise/ { sub(/.*noise /, ""); exit !($1 > 0 && $1 <= 60) }' d.txt || { cat d.txt; fail "noise"; }
   nephoscope render in/s.json --spp 4 -o e.ppm 2>e.txt && fail "--spp without paths"
   has e.txt 'error: --spp: nothing to apply it to'
+  for idle in "--light single" "--probe-pixels 4" "--budget-mib 64" "--levels resident --host-mib 9"; do
+    nephoscope render in/s.json --engine reference --spp 4 $idle -o e.ppm 2>e.txt && fail "$idle taken"
+    has e.txt 'nothing to apply it to'
+  done
   nephoscope render in/s.json --size 64x64 --engine reference --spp 1000000 -o f.pfm >f.txt &
   pid=$!
   sleep 2

@@ -108,7 +108,7 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--pixels", o.pixels, "adaptive (some interpolated, over planets) or all")
       ->group(group);
   command.add_option("--max-level", o.max_level, "finest level of the tree to use")->group(group);
-  command.add_option("--seed", o.seed, "of what is drawn by chance: the probe's pixels")
+  command.add_option("--seed", o.seed, "of what is drawn by chance: the probe's pixels, paths")
       ->group(group);
   command.add_option("--probe-pixels", o.probe_pixels, "pixels that measure the error; 0 = none")
       ->group(group);

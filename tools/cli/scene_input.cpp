@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
+#include <initializer_list>
 
 #include "cli/values.h"
 #include "core/error.h"
@@ -208,18 +209,34 @@ void apply_quality(Scene& scene, const RenderOptions& o) {
         integer_value("--probe-pixels", *o.probe_pixels, "render", "probe_pixels");
 }
 
+using GivenOption = std::pair<const char*, const std::optional<std::string>*>;
+
+// What would have no effect is no option of this picture.
+void refuse_given(std::initializer_list<GivenOption> options, const char* expected,
+                  const char* found) {
+  for (const auto& [option, value] : options)
+    if (*value) throw Error({"nothing to apply it to", option, expected, found, ""});
+}
+
 void apply_paths(Scene& scene, const RenderOptions& o) {
   PathGoals& paths = scene.render.paths;
   if (o.engine)
     scene.render.engine = choice_value("--engine", *o.engine, "render", "engine") == "march"
                               ? Engine::kMarch
                               : Engine::kReference;
-  for (const auto& [option, value] :
-       {std::pair{"--spp", &o.spp}, std::pair{"--noise", &o.noise},
-        std::pair{"--levels", &o.levels}, std::pair{"--host-mib", &o.host_mib},
-        std::pair{"--exact-orders", &o.exact_orders}})
-    if (*value && scene.render.engine == Engine::kMarch)
-      throw Error({"nothing to apply it to", option, "--engine reference", "the march", ""});
+  if (scene.render.engine == Engine::kMarch)
+    return refuse_given({{"--spp", &o.spp},
+                         {"--noise", &o.noise},
+                         {"--levels", &o.levels},
+                         {"--host-mib", &o.host_mib},
+                         {"--exact-orders", &o.exact_orders}},
+                        "--engine reference", "the march");
+  refuse_given({{"--step", &o.step_voxels},
+                {"--fetch", &o.fetch},
+                {"--light", &o.light},
+                {"--pixels", &o.pixels},
+                {"--probe-pixels", &o.probe_pixels}},
+               "--engine march", "the reference");
   // One goal on the command line replaces both of a scene.
   if (o.spp || o.noise) paths.samples = 0, paths.noise = 0;
   if (o.spp) paths.samples = integer_value("--spp", *o.spp, "paths", "spp");
@@ -230,6 +247,11 @@ void apply_paths(Scene& scene, const RenderOptions& o) {
                        : PathLevels::kResident;
   if (o.exact_orders)
     paths.exact_orders = integer_value("--exact-orders", *o.exact_orders, "paths", "exact_orders");
+  if (paths.levels == PathLevels::kFinest)
+    refuse_given({{"--budget-mib", &o.budget_mib}, {"--tolerance", &o.tolerance}},
+                 "--levels resident", "the finest bricks");
+  else
+    refuse_given({{"--host-mib", &o.host_mib}}, "--levels finest", "resident bricks");
   if (o.host_mib) paths.host_mib = number_value("--host-mib", *o.host_mib, "paths", "host_mib");
 }
 
