@@ -3,11 +3,11 @@
 #include <glm/glm.hpp>
 
 #include "accuracy_report.h"
-#include "air.h"
 #include "cf_twin.h"
-#include "conventions/horizontal.h"
+#include "forecast/conventions/horizontal.h"
+#include "forecast/water/air.h"
 
-namespace nepho::netcdf::test {
+namespace nepho::forecast::test {
 using nepho::test::report_accuracy;
 namespace {
 
@@ -324,4 +324,4 @@ TEST(Grid, CornersOfPointsAreTheMaps) {
 }
 
 }  // namespace
-}  // namespace nepho::netcdf::test
+}  // namespace nepho::forecast::test

@@ -7,7 +7,7 @@
 
 #include "nc_writer.h"
 
-namespace nepho::netcdf::test {
+namespace nepho::forecast::test {
 
 // A small CF forecast whose every value is a formula of its place, written in any of the ways that
 // models have: what is read must not depend on them.
@@ -103,4 +103,4 @@ struct CfTwin {
   }
 };
 
-}  // namespace nepho::netcdf::test
+}  // namespace nepho::forecast::test

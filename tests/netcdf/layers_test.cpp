@@ -6,18 +6,18 @@
 #include <random>
 
 #include "accuracy_report.h"
+#include "forecast/bricks/layer_profile.h"
+#include "forecast/bricks/vertical_hats.h"
 #include "made_source.h"
 #include "remapped.h"
-#include "sources/netcdf/layer_profile.h"
-#include "sources/netcdf/vertical_hats.h"
 
 namespace nepho::test {
 namespace {
 
-using netcdf::Layers;
-using netcdf::ModelColumn;
-using netcdf::Parabola;
-using netcdf::VerticalHats;
+using forecast::Layers;
+using forecast::ModelColumn;
+using forecast::Parabola;
+using forecast::VerticalHats;
 
 struct RandomColumn {
   std::vector<double> thickness, mean;
@@ -35,7 +35,7 @@ struct RandomColumn {
   }
   std::vector<Parabola> profile() const {
     std::vector<Parabola> list(mean.size());
-    netcdf::reconstruct(thickness, mean, list);
+    forecast::reconstruct(thickness, mean, list);
     return list;
   }
 };
@@ -92,7 +92,7 @@ TEST(Layers, ParabolasConvergeOnUnevenLayers) {
       mean.push_back((integral(wall(k + 1)) - integral(wall(k))) / thickness.back());
     }
     std::vector<Parabola> profile(mean.size());
-    netcdf::reconstruct(thickness, mean, profile);
+    forecast::reconstruct(thickness, mean, profile);
     double most = 0;
     for (int k = nz / 4; k < 3 * nz / 4; ++k)  // the lowest and the topmost are flat
       for (int step = 0; step <= 16; ++step) {
@@ -131,7 +131,7 @@ struct Column1d {
     const long double a = chart.body().equatorial_m;
     const auto cube = [&](float height_m) {
       const long double up =
-          1 + netcdf::chart_height_m(chart.body(), latitude_deg, double(height_m)) / a;
+          1 + forecast::chart_height_m(chart.body(), latitude_deg, double(height_m)) / a;
       return up * up * up / 3;
     };
     return double(value_per_m[layer] * a *

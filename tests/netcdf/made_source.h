@@ -5,20 +5,20 @@
 
 #include "bricks/coarsen.h"
 #include "bricks/quantise.h"
-#include "sources/netcdf/netcdf_source.h"
+#include "forecast/bricks/forecast_source.h"
 #include "synthetic_forecast.h"
 
 namespace nepho::test {
 
 // A source made from a forecast in memory, without files and modules.
-inline std::unique_ptr<BrickSource> made_source(std::shared_ptr<const netcdf::Forecast> forecast,
+inline std::unique_ptr<BrickSource> made_source(std::shared_ptr<const forecast::Forecast> forecast,
                                                 std::vector<RequestParameter> values = {}) {
   SourceRequest request{};
   request.volume_name = "made";
   request.parameters = values.data();
   request.parameter_count = values.size();
   Parameters parameters(request);
-  return netcdf::make_source("made", std::move(forecast), parameters);
+  return forecast::make_source("made", std::move(forecast), parameters);
 }
 
 inline BrickSamples read_samples(const BrickSource& source, NodeKey key, double time_s = 0,

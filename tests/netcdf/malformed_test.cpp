@@ -12,10 +12,10 @@
 #include <stdexcept>
 
 #include "cf_twin.h"
-#include "survives.h"
+#include "sources/netcdf/survives.h"
 #include "wrf_twin.h"
 
-namespace nepho::netcdf::test {
+namespace nepho::forecast::test {
 namespace {
 
 std::string refused(const std::string& path, const std::vector<std::string>& says) {
@@ -207,11 +207,11 @@ TEST(Malformed, NoHorizontalGrid) {
 }
 
 TEST(Malformed, SurvivesTellsTheEndOfACopy) {
-  EXPECT_TRUE(survives([] {}));
-  EXPECT_TRUE(survives([] { throw std::runtime_error("met again here"); }));
+  EXPECT_TRUE(netcdf::survives([] {}));
+  EXPECT_TRUE(netcdf::survives([] { throw std::runtime_error("met again here"); }));
   testing::internal::CaptureStderr();
-  EXPECT_FALSE(survives([] { std::abort(); }));
-  EXPECT_FALSE(survives([] {
+  EXPECT_FALSE(netcdf::survives([] { std::abort(); }));
+  EXPECT_FALSE(netcdf::survives([] {
     std::fputs("last words\n", stderr);
     std::raise(SIGSEGV);
   }));
@@ -326,4 +326,4 @@ TEST(Malformed, WrfWithoutItsAir) {
 }
 
 }  // namespace
-}  // namespace nepho::netcdf::test
+}  // namespace nepho::forecast::test

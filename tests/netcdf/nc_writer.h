@@ -10,10 +10,10 @@
 #include <variant>
 #include <vector>
 
-#include "conventions/convention.h"
 #include "core/error.h"
+#include "sources/netcdf/open_netcdf.h"
 
-namespace nepho::netcdf::test {
+namespace nepho::forecast::test {
 
 // A folder of this process, gone at its end.
 class TestFolder {
@@ -97,7 +97,7 @@ inline std::unique_ptr<Forecast> open(const std::string& path, bool force = fals
   request.files = {path};
   request.force = force;
   request.region = region;
-  return open_forecast(request);
+  return netcdf::open_netcdf(request);
 }
 
 // What opening says; "" where it succeeds.
@@ -110,4 +110,4 @@ inline std::string refusal(const std::string& path) {
   return "";
 }
 
-}  // namespace nepho::netcdf::test
+}  // namespace nepho::forecast::test

@@ -5,12 +5,13 @@
 #include <sstream>
 
 #include "accuracy_report.h"
+#include "forecast/files/file_time.h"
+#include "forecast/water/water.h"
 #include "geo/map_projection.h"
-#include "nc_time.h"
 #include "nc_writer.h"
-#include "water.h"
+#include "sources/netcdf/nc_file.h"
 
-namespace nepho::netcdf::test {
+namespace nepho::forecast::test {
 using nepho::test::report_accuracy;
 namespace {
 
@@ -86,7 +87,7 @@ TEST(Time, AxesAgainstDates) {
       if (*c.calendar) attributes["calendar"] = std::string(c.calendar);
       nc.variable("time", NC_DOUBLE, {"time"}, {c.value}, attributes);
     }
-    const NcFile file(path, {});
+    const netcdf::NcFile file(path, {});
     const auto wanted = parse_date_ns(c.date);
     ASSERT_TRUE(wanted);
     EXPECT_NEAR(double(read_times_ns(file, *file.find("time"))[0] - *wanted) * 1e-9, 0, 1e-3)
@@ -106,7 +107,7 @@ TEST(Time, OtherCalendarsAreRefused) {
       nc.variable("time", NC_DOUBLE, {"time"}, {1},
                   {{"units", "days since 2000-01-01"}, {"calendar", std::string(calendar)}});
     }
-    const NcFile file(path, {});
+    const netcdf::NcFile file(path, {});
     EXPECT_THROW(read_times_ns(file, *file.find("time")), Error) << calendar;
   }
 }
@@ -130,7 +131,7 @@ TEST(Packing, MissingValues) {
     put("twenty", NC_FLOAT, {-1e20, 1, 2, 3}, {{"missing_value", -1e20}});
     put("bytes", NC_BYTE, {-127, 1, 2, 3}, {});  // bytes have no default fill
   }
-  const NcFile file(path, {});
+  const netcdf::NcFile file(path, {});
   const auto expect = [&](const char* name, std::vector<double> wanted) {
     const std::vector<double> doubles = file.read_all(*file.find(name));
     const std::vector<float> floats = file.read_floats(*file.find(name), {0}, {4});
@@ -217,4 +218,4 @@ TEST(Map, RotatedPole) {
 }
 
 }  // namespace
-}  // namespace nepho::netcdf::test
+}  // namespace nepho::forecast::test

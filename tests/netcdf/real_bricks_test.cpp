@@ -8,15 +8,15 @@
 #include "accuracy_report.h"
 #include "made_source.h"
 #include "remapped.h"
-#include "sources/netcdf/conventions/convention.h"
+#include "sources/netcdf/open_netcdf.h"
 
 namespace nepho::test {
 namespace {
 
-std::shared_ptr<const netcdf::Forecast> open(const std::string& file) {
-  netcdf::OpenRequest request;
+std::shared_ptr<const forecast::Forecast> open(const std::string& file) {
+  forecast::OpenRequest request;
   request.files = {file};
-  return netcdf::open_forecast(request);
+  return netcdf::open_netcdf(request);
 }
 
 class RealFile : public testing::TestWithParam<const char*> {};

@@ -5,17 +5,18 @@
 #include <cmath>
 #include <cstdio>
 
-#include "conventions/convention.h"
 #include "core/error.h"
 #include "nc_writer.h"
+#include "sources/netcdf/nc_file.h"
+#include "sources/netcdf/open_netcdf.h"
 
-namespace nepho::netcdf {
+namespace nepho::forecast {
 namespace {
 
 std::unique_ptr<Forecast> open(const std::string& name) {
   OpenRequest request;
   request.files = {std::string(NEPHO_TEST_REAL_DATA) + "/" + name};
-  return open_forecast(request);
+  return netcdf::open_netcdf(request);
 }
 
 void print(const Forecast& f) {
@@ -118,7 +119,8 @@ TEST(RealFiles, UnifiedModel) {
   const auto f = test::open(path);
   print(*f);
   const std::vector<double> ours = optical_depths(f->columns(0));
-  const NcFile file(std::string(NEPHO_TEST_REAL_DATA) + "/nc/um_38lev_cosp_input_2d.nc", {});
+  const netcdf::NcFile file(std::string(NEPHO_TEST_REAL_DATA) + "/nc/um_38lev_cosp_input_2d.nc",
+                            {});
   const std::vector<double> depth = file.read_all(*file.find("dtau_s"));
   const std::vector<double> cover = file.read_all(*file.find("tca"));
   double in_cloud = 0, mean = 0, total = 0, xy = 0, xx = 0, yy = 0;
@@ -189,4 +191,4 @@ TEST(RealFiles, EdgesAreRefusedInWords) {
 }
 
 }  // namespace
-}  // namespace nepho::netcdf
+}  // namespace nepho::forecast

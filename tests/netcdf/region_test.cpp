@@ -5,12 +5,12 @@
 
 #include "accuracy_report.h"
 #include "cf_twin.h"
+#include "forecast/bricks/grid_search.h"
 #include "geo/place.h"
 #include "made_source.h"
-#include "sources/netcdf/grid_search.h"
 #include "wrf_twin.h"
 
-namespace nepho::netcdf::test {
+namespace nepho::forecast::test {
 using nepho::test::report_accuracy;
 namespace {
 
@@ -376,4 +376,4 @@ TEST(Region, TextsAreFourNumbersInOrder) {
 }
 
 }  // namespace
-}  // namespace nepho::netcdf::test
+}  // namespace nepho::forecast::test

@@ -29,7 +29,7 @@ TEST_P(Cases, TotalOpticalDepthIsTheFiles) {
 
 // Of columns in both modes: what fills the layers keeps their optical depth.
 TEST_P(Cases, ColumnsAreTheFieldUnderTheSameKernel) {
-  for (const netcdf::Layers layers : {netcdf::Layers::kSmooth, netcdf::Layers::kConstant}) {
+  for (const forecast::Layers layers : {forecast::Layers::kSmooth, forecast::Layers::kConstant}) {
     const double rms = column_rms(Remapped(synthetic_forecast(GetParam()), {}, 0, 0, layers));
     report_accuracy("netcdf", "column optical depth against the field under the same hats, rms",
                     rms, 5e-3, "1");
@@ -39,7 +39,7 @@ TEST_P(Cases, ColumnsAreTheFieldUnderTheSameKernel) {
 
 // Whole hats in all directions, from the source's own point field: the file's steps.
 TEST_P(Cases, SamplesAreTheFieldUnderTheSameKernel) {
-  const Remapped r(synthetic_forecast(GetParam()), {}, 0, 0, netcdf::Layers::kConstant);
+  const Remapped r(synthetic_forecast(GetParam()), {}, 0, 0, forecast::Layers::kConstant);
   const auto source = made_source(r.forecast);
   const double a = r.chart().body().equatorial_m;
   const Index3& n = r.cells();
@@ -149,7 +149,7 @@ TEST(Remap, NoSeamAtEdgesOfTheCube) {
   forecast->ice_per_m = nullptr;
   // Smooth as a model's cells allow; the date line and the poles are inside faces.
   forecast->extinction_per_m = [](glm::dvec2 p, double, double) {
-    const glm::dvec3 u = netcdf::unit_vector(p);
+    const glm::dvec3 u = forecast::unit_vector(p);
     return 1e-3 * (2 + u.x + 0.7 * u.y - 0.5 * u.z + u.x * u.y);
   };
   const Remapped r(forecast);
@@ -248,11 +248,11 @@ TEST(Remap, ClearBelowLosesNoLightThatMatters) {
 
 TEST(Remap, ResolutionFollowsTheModelAndTheUser) {
   const auto forecast = synthetic_forecast("mercator");
-  const netcdf::Layout own = choose_layout(*forecast, {});
-  EXPECT_LE(own.voxel_width_m, 1.415 * netcdf::cell_width_m(*forecast->cells));
-  EXPECT_GE(own.voxel_width_m, netcdf::cell_width_m(*forecast->cells) / 1.415);
+  const forecast::Layout own = choose_layout(*forecast, {});
+  EXPECT_LE(own.voxel_width_m, 1.415 * forecast::cell_width_m(*forecast->cells));
+  EXPECT_GE(own.voxel_width_m, forecast::cell_width_m(*forecast->cells) / 1.415);
   EXPECT_GE(own.voxel_height_m, 50);
-  const netcdf::Layout asked = choose_layout(*forecast, {2000.0, 30.0});
+  const forecast::Layout asked = choose_layout(*forecast, {2000.0, 30.0});
   EXPECT_LE(asked.voxel_width_m, 2000);
   EXPECT_LE(asked.voxel_height_m, 30);
   const glm::dvec2 range_m = forecast->height_range_m();

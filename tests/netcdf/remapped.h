@@ -8,11 +8,11 @@
 #include <random>
 
 #include "bricks/coarsen.h"
+#include "forecast/bricks/grid_search.h"
+#include "forecast/bricks/hat_remap.h"
+#include "forecast/bricks/layout.h"
 #include "geo/place.h"
 #include "pyramid/level_filter.h"
-#include "sources/netcdf/grid_search.h"
-#include "sources/netcdf/hat_remap.h"
-#include "sources/netcdf/layout.h"
 
 namespace nepho::test {
 
@@ -20,28 +20,28 @@ namespace nepho::test {
 // code with the remap: points of the chart looked up in the model's grid, and the model's cells on
 // the ellipsoid.
 
-using netcdf::GridSearch;
-using netcdf::HatRemap;
-using netcdf::HorizontalGrid;
+using forecast::GridSearch;
+using forecast::HatRemap;
+using forecast::HorizontalGrid;
 using Part = HatRemap::Part;
 
 struct Remapped {
-  std::shared_ptr<const netcdf::Forecast> forecast;
-  netcdf::Layout layout;
-  netcdf::ForecastColumns columns;
+  std::shared_ptr<const forecast::Forecast> forecast;
+  forecast::Layout layout;
+  forecast::ForecastColumns columns;
   std::shared_ptr<const HorizontalGrid> grid;
   std::unique_ptr<HatRemap> remap;
 
-  explicit Remapped(std::shared_ptr<const netcdf::Forecast> f, netcdf::LayoutOptions options = {},
-                    double clear_below_per_m = 0, std::size_t time = 0,
-                    netcdf::Layers layers = netcdf::Layers::kSmooth)
+  explicit Remapped(std::shared_ptr<const forecast::Forecast> f,
+                    forecast::LayoutOptions options = {}, double clear_below_per_m = 0,
+                    std::size_t time = 0, forecast::Layers layers = forecast::Layers::kSmooth)
       : forecast(std::move(f)),
         layout(choose_layout(*forecast, options)),
         columns(forecast->columns(time)),
         grid(forecast->grid(time)) {
     remap = std::make_unique<HatRemap>(
         layout.chart, layout.lattice, *grid, columns,
-        netcdf::RemapOptions{layout.extend_below_m, clear_below_per_m, layers});
+        forecast::RemapOptions{layout.extend_below_m, clear_below_per_m, layers});
   }
   const ShellChart& chart() const { return *layout.chart; }
   int level() const { return layout.lattice.max_level(); }
@@ -192,7 +192,7 @@ inline double column_rms(const Remapped& r, std::size_t most = 60) {
     const double lat_deg =
         r.grid->lat_lon_deg(int(cell) % r.columns.nx + 0.5, int(cell) / r.columns.nx + 0.5).x;
     const auto cube = [&](double h) {
-      const double up = 1 + netcdf::chart_height_m(r.chart().body(), lat_deg, h) / a;
+      const double up = 1 + forecast::chart_height_m(r.chart().body(), lat_deg, h) / a;
       return up * up * up / 3;
     };
     double sum = 0;

@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "accuracy_report.h"
+#include "forecast/bricks/grid_search.h"
 #include "geo/place.h"
 #include "made_source.h"
-#include "sources/netcdf/grid_search.h"
 
 namespace nepho::test {
 namespace {
@@ -224,7 +224,7 @@ TEST(NetcdfSource, GroundLiesWhereTheFileHasIt) {
     const bool globe = std::string(name) == "globe";
     const double waves = globe ? 2 : 25;
     forecast->ground_m = [=](glm::dvec2 p) {
-      const glm::dvec3 u = netcdf::unit_vector(p);
+      const glm::dvec3 u = forecast::unit_vector(p);
       return 1000 + 600 * std::sin(waves * u.x + 1) * std::cos(waves * u.y) + 300 * u.z;
     };
     const auto source = made_source(forecast);

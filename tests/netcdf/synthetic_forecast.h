@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "sources/netcdf/forecast.h"
+#include "forecast/forecast.h"
 
 namespace nepho::test {
 
@@ -15,7 +15,7 @@ namespace nepho::test {
 inline constexpr double kDegree = std::numbers::pi / 180;
 
 // Regular in latitude and longitude. Rows run south where step_lat < 0.
-class LatLonGrid final : public netcdf::HorizontalGrid {
+class LatLonGrid final : public forecast::HorizontalGrid {
  public:
   LatLonGrid(int nx, int ny, double lon0_deg, double step_lon_deg, double lat0_deg,
              double step_lat_deg)
@@ -33,7 +33,7 @@ class LatLonGrid final : public netcdf::HorizontalGrid {
 };
 
 // Mercator on a sphere, as WRF's MAP_PROJ 3: square cells in the projection.
-class MercatorGrid final : public netcdf::HorizontalGrid {
+class MercatorGrid final : public forecast::HorizontalGrid {
  public:
   MercatorGrid(int nx, int ny, glm::dvec2 centre_deg, double cell_deg)
       : nx_(nx), ny_(ny), centre_(centre_deg), cell_(cell_deg) {}
@@ -53,7 +53,7 @@ class MercatorGrid final : public netcdf::HorizontalGrid {
 };
 
 // A rotated pole: regular about the rotated equator, whose (0, 0) is at `centre`. Over a pole too.
-class RotatedGrid final : public netcdf::HorizontalGrid {
+class RotatedGrid final : public forecast::HorizontalGrid {
  public:
   RotatedGrid(int nx, int ny, glm::dvec2 centre_deg, double turn_deg, double cell_deg)
       : nx_(nx), ny_(ny), cell_(cell_deg) {
@@ -81,9 +81,9 @@ class RotatedGrid final : public netcdf::HorizontalGrid {
   glm::dmat3 axes_{1.0};
 };
 
-struct SyntheticForecast final : netcdf::Forecast {
-  std::shared_ptr<const netcdf::HorizontalGrid> cells;
-  std::vector<std::shared_ptr<const netcdf::HorizontalGrid>> moving;  // one a time; empty: cells
+struct SyntheticForecast final : forecast::Forecast {
+  std::shared_ptr<const forecast::HorizontalGrid> cells;
+  std::vector<std::shared_ptr<const forecast::HorizontalGrid>> moving;  // one a time; empty: cells
   int nz = 0;
   // Height (m) of the ground, and of interface k of nz above it, at latitude and longitude (deg).
   std::function<double(glm::dvec2)> ground_m = [](glm::dvec2) { return 0.0; };
@@ -96,7 +96,7 @@ struct SyntheticForecast final : netcdf::Forecast {
   std::int64_t time_origin_ns() const override { return 0; }
   const std::vector<double>& times_s() const override { return times; }
   bool has_ice() const override { return bool(ice_per_m); }
-  std::shared_ptr<const netcdf::HorizontalGrid> grid(std::size_t time) const override {
+  std::shared_ptr<const forecast::HorizontalGrid> grid(std::size_t time) const override {
     return moving.empty() ? cells : moving[time];
   }
   glm::dvec2 middle(int i, int j, std::size_t time = 0) const {
@@ -106,8 +106,8 @@ struct SyntheticForecast final : netcdf::Forecast {
     const double top_m = level_m(1);  // flat, as terrain-following levels are
     return ground + level_m(double(k) / nz) * (1 - ground / top_m);
   }
-  netcdf::ForecastColumns columns(std::size_t time) const override {
-    netcdf::ForecastColumns c;
+  forecast::ForecastColumns columns(std::size_t time) const override {
+    forecast::ForecastColumns c;
     c.nx = cells->nx(), c.ny = cells->ny(), c.nz = nz;
     for (int j = 0; j < c.ny; ++j)
       for (int i = 0; i < c.nx; ++i) {
@@ -123,8 +123,8 @@ struct SyntheticForecast final : netcdf::Forecast {
       }
     return c;
   }
-  netcdf::ForecastGround ground(std::size_t time) const override {
-    netcdf::ForecastGround g;
+  forecast::ForecastGround ground(std::size_t time) const override {
+    forecast::ForecastGround g;
     for (int j = 0; j < cells->ny(); ++j)
       for (int i = 0; i < cells->nx(); ++i) {
         g.height_m.push_back(float(ground_m(middle(i, j, time))));

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "sources/netcdf/netcdf_source.h"
+#include "forecast/bricks/forecast_source.h"
 #include "synthetic_forecast.h"
 
 extern "C" __attribute__((visibility("default"))) const nepho::SourceModule* nepho_source_module() {
@@ -21,8 +21,8 @@ extern "C" __attribute__((visibility("default"))) const nepho::SourceModule* nep
             own.parameter_count = 2;
           }
           nepho::Parameters parameters(own);
-          return nepho::netcdf::make_source(request->volume_name,
-                                            nepho::test::synthetic_forecast(name), parameters);
+          return nepho::forecast::make_source(request->volume_name,
+                                              nepho::test::synthetic_forecast(name), parameters);
         });
       }};
   return &module;

@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "accuracy_report.h"
-#include "air.h"
+#include "forecast/water/air.h"
+#include "sources/netcdf/open_netcdf.h"
 #include "wrf_twin.h"
 
-namespace nepho::netcdf::test {
+namespace nepho::forecast::test {
 using nepho::test::report_accuracy;
 namespace {
 
@@ -146,7 +147,7 @@ TEST(Wrf, SeveralFilesAreOneForecast) {
   const std::string first = early.write("first"), both = late.write("both");
   OpenRequest request;
   request.files = {both, first};
-  const auto f = open_forecast(request);
+  const auto f = netcdf::open_netcdf(request);
   ASSERT_EQ(f->times_s().size(), 2u);  // one time is in both
   EXPECT_EQ(f->times_s()[1], 3 * 3600.0);
   EXPECT_EQ(f->columns(0).extinction_per_m, open(first)->columns(0).extinction_per_m);
@@ -155,4 +156,4 @@ TEST(Wrf, SeveralFilesAreOneForecast) {
 }
 
 }  // namespace
-}  // namespace nepho::netcdf::test
+}  // namespace nepho::forecast::test

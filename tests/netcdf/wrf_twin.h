@@ -9,7 +9,7 @@
 
 #include "nc_writer.h"
 
-namespace nepho::netcdf::test {
+namespace nepho::forecast::test {
 
 // A WRF file on its Mercator map (true latitude 0, sphere of 6370 km), with a nest that moves by a
 // cell a time.
@@ -94,4 +94,4 @@ struct WrfTwin {
   }
 };
 
-}  // namespace nepho::netcdf::test
+}  // namespace nepho::forecast::test

@@ -2,17 +2,18 @@
 #include <cmath>
 #include <limits>
 
-#include "condensate.h"
 #include "expect_stable.h"
+#include "forecast/files/file_time.h"
+#include "forecast/water/condensate.h"
+#include "forecast/water/level_heights.h"
+#include "forecast/water/water.h"
 #include "geo/map_projection.h"
-#include "level_heights.h"
 #include "made_source.h"
-#include "nc_time.h"
 #include "nc_writer.h"
 #include "remapped.h"
-#include "water.h"
+#include "sources/netcdf/nc_file.h"
 
-namespace nepho::netcdf::test {
+namespace nepho::forecast::test {
 using nepho::test::expect_stable;
 namespace {
 
@@ -49,7 +50,7 @@ TEST(Forecasts, MissingValuesNeverComeThrough) {
       nc.variable(kind.name, kind.type, {"n"}, values, kind.attributes);
     }
   }
-  const NcFile file(path, {});
+  const netcdf::NcFile file(path, {});
   std::size_t wrong = 0, naive = 0, injected = 0;
   for (const Kind& kind : kinds) {
     const std::vector<double> read = file.read_all(*file.find(kind.name));
@@ -71,7 +72,7 @@ TEST(Forecasts, MissingValuesNeverComeThrough) {
 TEST(Forecasts, CloudFractionKeepsTheWaterPath) {
   constexpr int nz = 5;
   constexpr double content = 2e-4, layer_m = 300;
-  NcVariable variable;
+  FileVariable variable;
   variable.name = "clw";
   double worst = 0, naive = 0;
   for (const float fraction : {1.0f, 0.5f, 0.1f, 1e-3f, 1e-6f, 0.0f}) {
@@ -158,7 +159,7 @@ TEST(Forecasts, TimesKeepTheirSeconds) {
     nc.variable("time", NC_DOUBLE, {"time"}, hours,
                 {{"units", std::string("hours since 1900-01-01 00:00:00.0")}});
   }
-  const NcFile file(path, {});
+  const netcdf::NcFile file(path, {});
   const std::vector<std::int64_t> found = read_times_ns(file, *file.find("time"));
   const std::int64_t first = *parse_date_ns("2011-01-15 12:00:00");
   double worst = 0, naive = 0;
@@ -214,4 +215,4 @@ TEST(Forecasts, RadiiAreNeverZero) {
 }
 
 }  // namespace
-}  // namespace nepho::netcdf::test
+}  // namespace nepho::forecast::test

@@ -1,4 +1,4 @@
-#include "classic_size.h"
+#include "sources/netcdf/classic_size.h"
 
 #include <algorithm>
 #include <array>

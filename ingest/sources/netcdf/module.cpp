@@ -1,6 +1,6 @@
 #include "api/module_support.h"
-#include "sources/netcdf/conventions/convention.h"
-#include "sources/netcdf/netcdf_source.h"
+#include "forecast/bricks/forecast_source.h"
+#include "sources/netcdf/open_netcdf.h"
 
 namespace nepho::netcdf {
 namespace {
@@ -14,13 +14,12 @@ std::unique_ptr<BrickSource> open_source(const SourceRequest& request) {
     throw Error({"a netcdf volume without a file", "volume '" + name + "'",
                  "one file, or several that hold times of one forecast", "none", ""});
   Parameters parameters(request);
-  OpenRequest open;
+  forecast::OpenRequest open;
   open.files.assign(request.files, request.files + request.file_count);
-  open.io_lock = request.io_lock;
   open.force = parameters.integer("force", 0, 0, 1) == 1;
   if (const std::string region = parameters.word("region", ""); !region.empty())
-    open.region = parse_region(region, parameters.where("region"));
-  return make_source(name, open_forecast(open), parameters);
+    open.region = forecast::parse_region(region, parameters.where("region"));
+  return forecast::make_source(name, open_netcdf(open, request.io_lock), parameters);
 }
 
 }  // namespace

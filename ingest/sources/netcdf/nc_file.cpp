@@ -1,4 +1,4 @@
-#include "nc_file.h"
+#include "sources/netcdf/nc_file.h"
 
 #include <hdf5.h>
 #include <netcdf.h>
@@ -12,9 +12,9 @@
 #include <numeric>
 
 #include "api/module_support.h"
-#include "classic_size.h"
 #include "core/error.h"
-#include "survives.h"
+#include "sources/netcdf/classic_size.h"
+#include "sources/netcdf/survives.h"
 
 namespace nepho::netcdf {
 namespace {
@@ -68,8 +68,8 @@ bool is_number(int type) {
   return type != NC_CHAR && type != NC_STRING && type <= NC_UINT64 && type >= NC_BYTE;
 }
 
-NcAttribute read_attribute(int file, int variable, const char* name) {
-  NcAttribute result{name, "", {}};
+FileAttribute read_attribute(int file, int variable, const char* name) {
+  FileAttribute result{name, "", {}};
   nc_type type = 0;
   std::size_t length = 0;
   if (nc_inq_att(file, variable, name, &type, &length) != NC_NOERR) return result;
@@ -91,7 +91,7 @@ NcAttribute read_attribute(int file, int variable, const char* name) {
   return result;
 }
 
-void read_attributes(int file, int variable, int count, std::vector<NcAttribute>& attributes) {
+void read_attributes(int file, int variable, int count, std::vector<FileAttribute>& attributes) {
   for (int a = 0; a < count; ++a) {
     char name[NC_MAX_NAME + 1] = {};
     if (nc_inq_attname(file, variable, a, name) == NC_NOERR)
@@ -100,26 +100,6 @@ void read_attributes(int file, int variable, int count, std::vector<NcAttribute>
 }
 
 }  // namespace
-
-const NcAttribute* NcVariable::attribute(const std::string& wanted) const {
-  const auto at = std::ranges::find(attributes, wanted, &NcAttribute::name);
-  return at == attributes.end() ? nullptr : &*at;
-}
-
-std::string NcVariable::text(const std::string& wanted) const {
-  const NcAttribute* found = attribute(wanted);
-  return found ? found->text : "";
-}
-
-std::optional<double> NcVariable::number(const std::string& wanted) const {
-  const NcAttribute* found = attribute(wanted);
-  if (!found || found->numbers.empty()) return {};
-  return found->numbers.front();
-}
-
-bool NcVariable::numeric() const {
-  return is_number(type);
-}
 
 template <class Action>
 auto NcFile::locked(Action&& action) const {
@@ -130,7 +110,7 @@ auto NcFile::locked(Action&& action) const {
   });
 }
 
-NcFile::NcFile(std::string path, IoLock io_lock) : path_(std::move(path)), io_lock_(io_lock) {
+NcFile::NcFile(std::string path, IoLock io_lock) : DataFile(std::move(path)), io_lock_(io_lock) {
   check_plain_file(path_);
   check_classic_size(path_);
   const auto open = [&] {
@@ -165,7 +145,7 @@ void NcFile::inquire() {
     refuse(path_, status);
   for (int d = 0; d < dimensions; ++d) {
     char name[NC_MAX_NAME + 1] = {};
-    NcDimension dimension;
+    forecast::FileDimension dimension;
     if (const int status = nc_inq_dim(id_, d, name, &dimension.size)) refuse(path_, status);
     dimension.name = name;
     dimensions_.push_back(dimension);
@@ -175,48 +155,25 @@ void NcFile::inquire() {
   read_attributes(id_, NC_GLOBAL, attributes, global_.attributes);
 }
 
-NcVariable NcFile::inquire_variable(int id) const {
+FileVariable NcFile::inquire_variable(int id) {
   char name[NC_MAX_NAME + 1] = {};
-  NcVariable variable;
+  FileVariable variable;
   variable.id = id;
-  int dimensions = 0, attributes = 0;
+  int type = 0, dimensions = 0, attributes = 0;
   std::vector<int> ids(NC_MAX_VAR_DIMS);
-  if (const int status =
-          nc_inq_var(id_, id, name, &variable.type, &dimensions, ids.data(), &attributes))
+  if (const int status = nc_inq_var(id_, id, name, &type, &dimensions, ids.data(), &attributes))
     refuse(path_, status);
   variable.name = name;
-  nc_inq_type(id_, variable.type, nullptr, &variable.value_bytes);
+  types_.push_back(type);
+  variable.numeric = is_number(type);
+  nc_inq_type(id_, type, nullptr, &variable.value_bytes);
   ids.resize(std::size_t(dimensions));
   variable.dimensions = ids;
   read_attributes(id_, id, attributes, variable.attributes);
   return variable;
 }
 
-const NcVariable* NcFile::find(const std::string& name) const {
-  const auto at = std::ranges::find(variables_, name, &NcVariable::name);
-  return at == variables_.end() ? nullptr : &*at;
-}
-
-std::vector<std::size_t> NcFile::shape(const NcVariable& variable) const {
-  std::vector<std::size_t> sizes;
-  for (const int d : variable.dimensions) sizes.push_back(size(d));
-  return sizes;
-}
-
-std::string NcFile::shape_text(const NcVariable& variable) const {
-  std::string text;
-  for (const int d : variable.dimensions)
-    text += (text.empty() ? "" : ", ") + name(d) + " " + std::to_string(size(d));
-  return variable.name + "(" + text + ")";
-}
-
-std::size_t NcFile::values_in(const NcVariable& variable) const {
-  std::size_t total = 1;
-  for (const int d : variable.dimensions) total *= size(d);
-  return total;
-}
-
-VariableBytes NcFile::bytes_read(const NcVariable& variable) const {
+forecast::VariableBytes NcFile::bytes_read(const FileVariable& variable) const {
   return {variable.name, bytes_[std::size_t(variable.id)],
           values_in(variable) * variable.value_bytes};
 }
@@ -224,9 +181,10 @@ VariableBytes NcFile::bytes_read(const NcVariable& variable) const {
 // Floats without packing are read where they stay; all else goes through blocks of doubles along
 // the slowest dimension.
 template <class T>
-std::vector<T> NcFile::read(const NcVariable& variable, const std::vector<std::size_t>& start,
+std::vector<T> NcFile::read(const FileVariable& variable, const std::vector<std::size_t>& start,
                             const std::vector<std::size_t>& count) const {
-  const Packing packing = packing_of(variable);
+  const int type = types_[std::size_t(variable.id)];
+  const Packing packing = packing_of(variable, type);
   const std::size_t total =
       std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
   std::vector<T> result(total);
@@ -237,7 +195,7 @@ std::vector<T> NcFile::read(const NcVariable& variable, const std::vector<std::s
                  nc_strerror(status), "the file is cut short or damaged: write or copy it again"});
   };
   if constexpr (std::is_same_v<T, float>)
-    if (variable.type == NC_FLOAT) {
+    if (type == NC_FLOAT) {
       locked([&] {
         if (const int status =
                 nc_get_vara_float(id_, variable.id, start.data(), count.data(), result.data()))
@@ -267,36 +225,32 @@ std::vector<T> NcFile::read(const NcVariable& variable, const std::vector<std::s
   return result;
 }
 
-std::vector<float> NcFile::read_floats(const NcVariable& variable,
+std::vector<float> NcFile::read_floats(const FileVariable& variable,
                                        const std::vector<std::size_t>& start,
                                        const std::vector<std::size_t>& count) const {
   return read<float>(variable, start, count);
 }
 
-std::vector<double> NcFile::read_doubles(const NcVariable& variable,
+std::vector<double> NcFile::read_doubles(const FileVariable& variable,
                                          const std::vector<std::size_t>& start,
                                          const std::vector<std::size_t>& count) const {
   return read<double>(variable, start, count);
 }
 
-std::vector<double> NcFile::read_all(const NcVariable& variable) const {
-  const std::vector<std::size_t> count = shape(variable);
-  return read<double>(variable, std::vector<std::size_t>(count.size(), 0), count);
-}
-
-std::vector<std::string> NcFile::read_texts(const NcVariable& variable) const {
+std::vector<std::string> NcFile::read_texts(const FileVariable& variable) const {
   const std::vector<std::size_t> count = shape(variable);
   const std::size_t total = values_in(variable);
   bytes_[std::size_t(variable.id)] += total * variable.value_bytes;
+  const int type = types_[std::size_t(variable.id)];
   std::vector<std::string> result;
   locked([&] {
-    if (variable.type == NC_CHAR) {
+    if (type == NC_CHAR) {
       const std::size_t length = count.empty() ? 1 : count.back();
       std::string all(total, '\0');
       if (nc_get_var_text(id_, variable.id, all.data()) != NC_NOERR) return;
       for (std::size_t at = 0; length > 0 && at + length <= total; at += length)
         result.push_back(trimmed(all.substr(at, length)));
-    } else if (variable.type == NC_STRING) {
+    } else if (type == NC_STRING) {
       std::vector<char*> strings(total, nullptr);
       if (nc_get_var_string(id_, variable.id, strings.data()) != NC_NOERR) return;
       for (const char* text : strings) result.push_back(text ? trimmed(text) : "");

@@ -4,12 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "api/source_module.h"
-#include "forecast.h"
+#include "forecast/files/data_file.h"
 
 namespace nepho::netcdf {
 
@@ -17,85 +16,39 @@ namespace nepho::netcdf {
 // the library run under the host's I/O lock, with HDF5's own error printing off; what is known of
 // dimensions, variables and attributes is read once, so that asking for it takes no lock.
 
-struct NcDimension {
-  std::string name;
-  std::size_t size = 0;
-};
+using forecast::FileAttribute;
+using forecast::FileVariable;
 
-struct NcAttribute {
-  std::string name, text;       // text of characters and strings, blanks at its ends removed
-  std::vector<double> numbers;  // of numbers
-};
-
-struct NcVariable {
-  std::string name;
-  int id = 0, type = 0;         // type: nc_type
-  std::size_t value_bytes = 0;  // of one value in the file, unpacked from compression
-  std::vector<int> dimensions;  // in the file's order, slowest first
-  std::vector<NcAttribute> attributes;
-
-  const NcAttribute* attribute(const std::string& name) const;
-  std::string text(const std::string& name) const;  // "" where there is none
-  std::optional<double> number(const std::string& name) const;
-  bool numeric() const;
-};
-
-class NcFile {
+class NcFile final : public forecast::DataFile {
  public:
   // Throws Error: no such file, empty, no netCDF, cut short, damaged.
   NcFile(std::string path, IoLock io_lock);
-  ~NcFile();
-  NcFile(const NcFile&) = delete;
-  NcFile& operator=(const NcFile&) = delete;
+  ~NcFile() override;
 
-  const std::string& path() const { return path_; }
-  const std::vector<NcDimension>& dimensions() const { return dimensions_; }
-  const std::vector<NcVariable>& variables() const { return variables_; }
-  const NcVariable* find(const std::string& name) const;
-  // Global attributes.
-  std::string text(const std::string& name) const { return global_.text(name); }
-  std::optional<double> number(const std::string& name) const { return global_.number(name); }
-
-  std::size_t size(int dimension) const { return dimensions_[std::size_t(dimension)].size; }
-  const std::string& name(int dimension) const { return dimensions_[std::size_t(dimension)].name; }
-  std::vector<std::size_t> shape(const NcVariable& variable) const;
-  std::string shape_text(const NcVariable& variable) const;  // "name(time 4, lat 73, lon 144)"
-
-  // A hyperslab in the file's own order, in the units of the file. Missing values (_FillValue,
-  // missing_value, valid_range, valid_min, valid_max, the library's default fill) are told by the
-  // packed number, before scale_factor and add_offset, and become NaN. _Unsigned is obeyed.
-  // Throws Error on damage.
-  std::vector<float> read_floats(const NcVariable& variable, const std::vector<std::size_t>& start,
-                                 const std::vector<std::size_t>& count) const;
-  std::vector<double> read_doubles(const NcVariable& variable,
+  // Missing values (_FillValue, missing_value, valid_range, valid_min, valid_max, the library's
+  // default fill) are told by the packed number, before scale_factor and add_offset. _Unsigned is
+  // obeyed.
+  std::vector<float> read_floats(const FileVariable& variable,
+                                 const std::vector<std::size_t>& start,
+                                 const std::vector<std::size_t>& count) const override;
+  std::vector<double> read_doubles(const FileVariable& variable,
                                    const std::vector<std::size_t>& start,
-                                   const std::vector<std::size_t>& count) const;
-  std::vector<double> read_all(const NcVariable& variable) const;
-  // A variable of characters: one string per row of its last dimension; of strings: each.
-  std::vector<std::string> read_texts(const NcVariable& variable) const;
-
-  // Bytes of this variable's values that have been asked for, and of all its values.
-  VariableBytes bytes_read(const NcVariable& variable) const;
-
-  // "file [variable]", for errors.
-  std::string where(const NcVariable& variable) const { return path_ + " [" + variable.name + "]"; }
+                                   const std::vector<std::size_t>& count) const override;
+  std::vector<std::string> read_texts(const FileVariable& variable) const override;
+  forecast::VariableBytes bytes_read(const FileVariable& variable) const override;
 
  private:
   template <class Action>
   auto locked(Action&& action) const;
   void inquire();
-  NcVariable inquire_variable(int id) const;
-  std::size_t values_in(const NcVariable& variable) const;
+  FileVariable inquire_variable(int id);
   template <class T>
-  std::vector<T> read(const NcVariable& variable, const std::vector<std::size_t>& start,
+  std::vector<T> read(const FileVariable& variable, const std::vector<std::size_t>& start,
                       const std::vector<std::size_t>& count) const;
 
-  std::string path_;
   IoLock io_lock_;
   int id_ = -1;
-  std::vector<NcDimension> dimensions_;
-  std::vector<NcVariable> variables_;
-  NcVariable global_;                                      // its attributes only
+  std::vector<int> types_;                                 // nc_type, by variable
   mutable std::vector<std::atomic<std::uint64_t>> bytes_;  // asked for, by variable
 };
 
@@ -107,6 +60,6 @@ struct Packing {
   double wrap = 0;            // added to negative packed values: 256 or 65536 where _Unsigned
   double value(double packed) const;
 };
-Packing packing_of(const NcVariable& variable);
+Packing packing_of(const FileVariable& variable, int nc_type);
 
 }  // namespace nepho::netcdf

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "nc_file.h"
+#include "sources/netcdf/nc_file.h"
 
 namespace nepho::netcdf {
 namespace {
@@ -51,7 +51,7 @@ double Packing::value(double packed) const {
   return packed * scale + offset;
 }
 
-Packing packing_of(const NcVariable& variable) {
+Packing packing_of(const FileVariable& variable, int type) {
   Packing packing;
   packing.lowest = -std::numeric_limits<double>::infinity();
   packing.highest = std::numeric_limits<double>::infinity();
@@ -59,22 +59,22 @@ Packing packing_of(const NcVariable& variable) {
   packing.offset = variable.number("add_offset").value_or(0);
   const std::string is_unsigned = variable.text("_Unsigned");
   if (is_unsigned == "true" || is_unsigned == "True") {
-    if (variable.type == NC_BYTE) packing.wrap = 256;
-    if (variable.type == NC_SHORT) packing.wrap = 65536;
-    if (variable.type == NC_INT) packing.wrap = 4294967296.0;
+    if (type == NC_BYTE) packing.wrap = 256;
+    if (type == NC_SHORT) packing.wrap = 65536;
+    if (type == NC_INT) packing.wrap = 4294967296.0;
   }
   const auto packed = [&](double value) {
-    return signed_to_unsigned(in_type(value, variable.type), packing.wrap);
+    return signed_to_unsigned(in_type(value, type), packing.wrap);
   };
   // FillValue without its line is what some writers leave behind; what it names is missing as well.
   for (const char* name : {"_FillValue", "missing_value", "FillValue"})
-    if (const NcAttribute* attribute = variable.attribute(name))
+    if (const FileAttribute* attribute = variable.attribute(name))
       for (const double value : attribute->numbers) packing.fills.push_back(packed(value));
   if (!variable.attribute("_FillValue"))
-    if (const auto fill = default_fill(variable.type)) packing.fills.push_back(packed(*fill));
+    if (const auto fill = default_fill(type)) packing.fills.push_back(packed(*fill));
   if (const auto low = variable.number("valid_min")) packing.lowest = packed(*low);
   if (const auto high = variable.number("valid_max")) packing.highest = packed(*high);
-  if (const NcAttribute* range = variable.attribute("valid_range"))
+  if (const FileAttribute* range = variable.attribute("valid_range"))
     if (range->numbers.size() == 2) {
       packing.lowest = packed(range->numbers[0]);
       packing.highest = packed(range->numbers[1]);

@@ -1,4 +1,4 @@
-#include "survives.h"
+#include "sources/netcdf/survives.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>

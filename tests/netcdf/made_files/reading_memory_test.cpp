@@ -4,9 +4,9 @@
 #include <sys/resource.h>
 
 #include "accuracy_report.h"
-#include "conventions/convention.h"
+#include "forecast/bricks/forecast_source.h"
 #include "made_file.h"
-#include "sources/netcdf/netcdf_source.h"
+#include "sources/netcdf/open_netcdf.h"
 #include "wrf_forecast.h"
 
 namespace nepho::test {
@@ -20,15 +20,15 @@ double peak_bytes() {
 
 // Bytes of the variables that were read.
 double open_source(const fs::path& path) {
-  netcdf::OpenRequest request;
+  forecast::OpenRequest request;
   request.files = {path.string()};
-  const std::shared_ptr<const netcdf::Forecast> forecast = netcdf::open_forecast(request);
+  const std::shared_ptr<const forecast::Forecast> forecast = netcdf::open_netcdf(request);
   const SourceRequest none{};
   Parameters parameters(none);
-  const auto source = netcdf::make_source("made", forecast, parameters);
+  const auto source = forecast::make_source("made", forecast, parameters);
   EXPECT_EQ(source->info().channels.size(), 2u);
   double bytes = 0;
-  for (const netcdf::VariableBytes& variable : forecast->bytes_read())
+  for (const forecast::VariableBytes& variable : forecast->bytes_read())
     bytes += double(variable.read);
   return bytes;
 }

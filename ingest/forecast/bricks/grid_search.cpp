@@ -1,0 +1,140 @@
+#include "forecast/bricks/grid_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace nepho::forecast {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr int kSeeds = 40;  // an axis
+
+}  // namespace
+
+glm::dvec3 unit_vector(glm::dvec2 lat_lon_deg) {
+  const double lat = lat_lon_deg.x * kDegree, lon = lat_lon_deg.y * kDegree;
+  return {std::cos(lat) * std::cos(lon), std::cos(lat) * std::sin(lon), std::sin(lat)};
+}
+
+glm::dvec2 lat_lon_deg_of(const glm::dvec3& u) {
+  return {std::atan2(u.z, std::hypot(u.x, u.y)) / kDegree, std::atan2(u.y, u.x) / kDegree};
+}
+
+GridSearch::GridSearch(std::shared_ptr<const HorizontalGrid> grid) : grid_(std::move(grid)) {
+  const int nx = grid_->nx(), ny = grid_->ny();
+  step_ = std::max(1, (std::max(nx, ny) + kSeeds - 1) / kSeeds);
+  for (int j = 0; j < ny; j += step_)
+    for (int i = 0; i < nx; i += step_) {
+      const glm::dvec2 at = {i + 0.5, j + 0.5};
+      seeds_.push_back({at, direction(at)});
+    }
+  const glm::dvec2 middle = {nx / 2.0, ny / 2.0};
+  const glm::dvec3 here = direction(middle);
+  cell_rad_ = std::min(glm::length(direction(middle - glm::dvec2(0.5, 0)) - here),
+                       glm::length(direction(middle - glm::dvec2(0, 0.5)) - here)) *
+              2;
+}
+
+glm::dvec3 GridSearch::direction(glm::dvec2 at) const {
+  return unit_vector(grid_->lat_lon_deg(at.x, at.y));
+}
+
+glm::dvec2 GridSearch::inside(glm::dvec2 at) const {
+  const double nx = grid_->nx();
+  if (grid_->around()) {
+    at.x -= nx * std::floor(at.x / nx);
+    if (at.x >= nx) at.x = 0;
+  } else {
+    at.x = std::clamp(at.x, 0.0, nx);
+  }
+  at.y = std::clamp(at.y, 0.0, double(grid_->ny()));
+  return at;
+}
+
+glm::dvec2 GridSearch::walk(const glm::dvec3& wanted, glm::dvec2 start, int step) const {
+  const auto distance = [&](glm::dvec2 at) {
+    const glm::dvec3 gap = direction(at) - wanted;
+    return glm::dot(gap, gap);
+  };
+  glm::dvec2 best = start;
+  double nearest = distance(best);
+  for (; step > 0; step /= 2)
+    for (bool moved = true; moved;) {
+      moved = false;
+      const glm::dvec2 from = best;
+      for (int n = 0; n < 9; ++n) {
+        const glm::dvec2 next = inside(from + double(step) * glm::dvec2(n % 3 - 1, n / 3 - 1));
+        if (const double d = distance(next); d < nearest) nearest = d, best = next, moved = true;
+      }
+    }
+  return best;
+}
+
+GridSearch::Found GridSearch::polish(const glm::dvec3& wanted, glm::dvec2 at) const {
+  constexpr double kStep = 1e-4;
+  glm::dvec3 gap = wanted - direction(at);
+  for (int turn = 0; turn < 40; ++turn) {
+    const glm::dvec2 x0 = inside(at - glm::dvec2(kStep, 0)), y0 = inside(at - glm::dvec2(0, kStep));
+    // One-sided at the grid's ends; across the end of the longitudes both sides are there.
+    const double run_x = grid_->around() ? 2 * kStep : inside(at + glm::dvec2(kStep, 0)).x - x0.x;
+    const double run_y = inside(at + glm::dvec2(0, kStep)).y - y0.y;
+    const glm::dvec3 dx = (direction(inside(at + glm::dvec2(kStep, 0))) - direction(x0)) / run_x;
+    const glm::dvec3 dy = (direction(inside(at + glm::dvec2(0, kStep))) - direction(y0)) / run_y;
+    const double xx = glm::dot(dx, dx), xy = glm::dot(dx, dy), yy = glm::dot(dy, dy);
+    const double gx = glm::dot(dx, gap), gy = glm::dot(dy, gap);
+    const double det = xx * yy - xy * xy;
+    glm::dvec2 step = det > 1e-12 * xx * yy ? glm::dvec2(gx * yy - gy * xy, gy * xx - gx * xy) / det
+                                            : glm::dvec2(0, yy > 0 ? gy / yy : 0);
+    const double length = glm::length(step);
+    if (!(length > 1e-9)) break;
+    if (length > 2) step *= 2 / length;
+    bool better = false;
+    for (int halving = 0; halving < 8 && !better; ++halving, step *= 0.5) {
+      const glm::dvec2 next = inside(at + step);
+      const glm::dvec3 rest = wanted - direction(next);
+      if (!(glm::dot(rest, rest) < glm::dot(gap, gap))) continue;
+      better = true;
+      at = next;
+      gap = rest;
+    }
+    if (!better) break;
+  }
+  const double off = glm::length(gap) / cell_rad_;
+  return {at, off < 1e-6 ? 0 : off};
+}
+
+// At a pole x has no slope, and a cell's middle may be the pole: from the nearest of points all
+// around it instead.
+GridSearch::Found GridSearch::near_pole(const glm::dvec3& wanted, Found found) const {
+  if (found.off_cells == 0 || !grid_->around()) return found;
+  constexpr int kAround = 36;
+  Seed nearest{found.at, glm::dvec3(0.0)};
+  for (int row = -6; row <= 6; ++row)
+    for (int n = 0; n < kAround; ++n) {
+      const glm::dvec2 at = inside({grid_->nx() * (n + 0.5) / kAround, found.at.y + 0.2 * row});
+      const Seed seed{at, direction(at)};
+      const double slope =
+          glm::length(direction(inside(at + glm::dvec2(0.01, 0))) - seed.direction);
+      if (slope > 1e-6 * cell_rad_ &&
+          glm::dot(seed.direction, wanted) > glm::dot(nearest.direction, wanted))
+        nearest = seed;
+    }
+  const Found again = polish(wanted, nearest.at);
+  return again.off_cells < found.off_cells ? again : found;
+}
+
+GridSearch::Found GridSearch::find(glm::dvec2 lat_lon_deg) const {
+  const glm::dvec3 wanted = unit_vector(lat_lon_deg);
+  const auto nearest = std::ranges::max_element(
+      seeds_, {}, [&](const Seed& seed) { return glm::dot(seed.direction, wanted); });
+  return near_pole(wanted, polish(wanted, walk(wanted, nearest->at, step_)));
+}
+
+GridSearch::Found GridSearch::find(glm::dvec2 lat_lon_deg, glm::dvec2 start) const {
+  const glm::dvec3 wanted = unit_vector(lat_lon_deg);
+  const Found found = polish(wanted, inside(start));
+  return found.off_cells > 0 ? find(lat_lon_deg) : found;
+}
+
+}  // namespace nepho::forecast

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "forecast/conventions/cell_window.h"
+#include "forecast/files/data_file.h"
+#include "forecast/forecast.h"
+
+namespace nepho::forecast {
+
+struct OpenRequest {
+  std::vector<std::string> files;  // times of one forecast; at least one
+  // Of the format that they have: netCDF, GRIB.
+  std::function<std::shared_ptr<const DataFile>(const std::string& path)> open_file;
+  // Draw what is out of every cloud's range: more than 20 g/m3 of water, or 1 /m of extinction.
+  bool force = false;
+  std::optional<Region> region;  // all that is read; the whole file without one
+};
+
+// Recognises the files' convention and opens them. Reads the first time that holds data, so that
+// what is refused is refused here. Throws Error.
+std::unique_ptr<Forecast> open_forecast(const OpenRequest& request);
+
+// A way in which models write files. Another model is one more row in convention.cpp, and one
+// small file.
+struct Convention {
+  const char* name;
+  // 0: not this one; the highest wins.
+  int (*recognise)(const DataFile& file);
+  std::unique_ptr<Forecast> (*open)(std::shared_ptr<const DataFile> file,
+                                    const OpenRequest& request);
+};
+
+// Times of all parts in order. At least one part.
+std::unique_ptr<Forecast> join_forecasts(std::vector<std::unique_ptr<Forecast>> parts);
+
+extern const Convention kWrf;  // WRF-ARW: wrf.cpp
+extern const Convention kCf;   // CF and what is near to it: cf.cpp
+
+}  // namespace nepho::forecast

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "forecast/conventions/dimension_roles.h"
+#include "forecast/conventions/field_reader.h"
+#include "forecast/forecast.h"
+
+namespace nepho::forecast {
+
+// The horizontal grid of a CF variable: fields of latitude and longitude; axes of latitude and
+// longitude; axes of a map with its grid_mapping (CF 1.11, appendix F: lambert_conformal_conic,
+// mercator, polar_stereographic, transverse_mercator, rotated_latitude_longitude). Axes in metres
+// without a mapping are laid around 0 N 0 E, which is said in `assumptions`. Throws Error on all
+// else.
+std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const DimensionRoles& roles,
+                                              const FieldReader& reader, const FileVariable& water,
+                                              std::vector<std::string>& assumptions);
+
+}  // namespace nepho::forecast

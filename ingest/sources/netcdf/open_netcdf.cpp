@@ -1,0 +1,14 @@
+#include "sources/netcdf/open_netcdf.h"
+
+#include "sources/netcdf/nc_file.h"
+
+namespace nepho::netcdf {
+
+std::unique_ptr<forecast::Forecast> open_netcdf(forecast::OpenRequest request, IoLock io_lock) {
+  request.open_file = [io_lock](const std::string& path) {
+    return std::make_shared<const NcFile>(path, io_lock);
+  };
+  return forecast::open_forecast(request);
+}
+
+}  // namespace nepho::netcdf

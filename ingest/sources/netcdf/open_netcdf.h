@@ -1,0 +1,11 @@
+#pragma once
+
+#include "api/source_module.h"
+#include "forecast/conventions/convention.h"
+
+namespace nepho::netcdf {
+
+// open_forecast() of netCDF files. Throws Error.
+std::unique_ptr<forecast::Forecast> open_netcdf(forecast::OpenRequest request, IoLock io_lock = {});
+
+}  // namespace nepho::netcdf
