@@ -31,6 +31,8 @@ struct RenderRequest {
   RenderSettings settings;
   // For tests: does also what was predicted to change nothing (RenderReport::left_out).
   bool leave_nothing_out = false;
+  // For tests: marches the light of all samples, each where it is (gl/light_samples.h).
+  bool march_all_light = false;
 };
 
 // Linear HDR, row 0 at the top: radiance r, g, b (W m-2 sr-1 nm-1) and the view optical depth.

@@ -169,6 +169,8 @@ void PlanetPasses::add_to(RenderReport& report) const {
   report.planet_bytes = sizeof(PlanetData) + table_bytes_ + surface_bytes_ + map_bytes_;
   report.image_bytes += met_bytes_;
   if (!scene_.air) report.left_out.push_back("air: the planet has none");
+  if (!scene_.clouds && !request_.volumes.empty())
+    report.left_out.push_back("clouds over air and ground: no volume holds any");
   if (!scene_.terrain && scene_.surface_known)
     report.left_out.push_back("terrain: all is sea, at most " + number(scene_.terrain_top_m) +
                               " m high; predicted to change at most " +
