@@ -92,6 +92,12 @@ double PhaseSampler::value(int wavelength, double one_minus_cos) const {
   return std::exp(table.log_values[i] + f * (table.log_values[i + 1] - table.log_values[i]));
 }
 
+glm::dvec3 PhaseSampler::values(double one_minus_cos) const {
+  const double first = value(0, one_minus_cos);
+  if (grey()) return glm::dvec3{first};
+  return {first, value(1, one_minus_cos), value(2, one_minus_cos)};
+}
+
 Turn PhaseSampler::sample(int wavelength, Random& random) const {
   if (kind_ == Kind::kHenyeyGreenstein) return sample_hg(asymmetry_, random.uniform());
   if (kind_ == Kind::kRayleigh) return sample_rayleigh(random);

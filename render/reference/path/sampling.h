@@ -53,6 +53,7 @@ class PhaseSampler {
   bool grey() const { return kind_ != Kind::kTable; }
   // 1/sr at wavelength 0, 1 or 2 (650, 550, 450 nm).
   double value(int wavelength, double one_minus_cos) const;
+  glm::dvec3 values(double one_minus_cos) const;
   Turn sample(int wavelength, Random& random) const;
 
  private:

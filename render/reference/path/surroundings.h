@@ -19,6 +19,7 @@ class Surroundings {
 
   // A direction to the sun: of its disc, evenly; of the beam, the one.
   glm::dvec3 to_sun(Random& random) const;
+  const glm::dvec3& sun_centre() const { return to_sun_; }
   bool beam() const { return !(sun_radius_rad_ > 0); }
   // Density of to_sun(), 1/sr; 0 outside the disc, and for a beam.
   double sun_density(const glm::dvec3& direction) const;
