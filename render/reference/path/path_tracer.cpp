@@ -54,6 +54,7 @@ struct PathTracer::Path {
   glm::dvec3 densities{1.0};  // of the phase functions so far, over the hero's
   double last_density = 0;    // of the last direction, mean of the wavelengths; 0: from the eye
   bool alive = true;
+  bool on_ground = false;  // its last turn
   PathSample result = {};
 
   void add(const glm::dvec3& radiance) { result.radiance_W_per_m2_sr_nm += radiance; }
@@ -108,11 +109,12 @@ PathSample PathTracer::sample(const Ray& ray, Random& random) const {
     path.densities[path.hero] = 1;
   }
   while (path.alive) {
-    const double ground_m = around_.ground_m(path.ray);
+    const double ground_m = around_.ground_m(path.ray, path.on_ground);
     const PhaseSampler* phase = next_scattering(path, ground_m);
 #if defined(NEPHO_MUTANT_BOUNCE_CAP)
     if (path.result.scatterings > 64) break;
 #endif
+    path.on_ground = false;
     if (phase) {
       light_at_collision(path, *phase);
       scatter(path, *phase);
@@ -200,19 +202,20 @@ bool PathTracer::meet_ground(Path& path, double ground_m) const {
   const glm::dvec3 to_eye = -path.ray.direction;
   const Surroundings::Spot spot = around_.spot(point_m);
   const glm::dvec3 to_sun = around_.to_sun(path.random);
-  const Ray ray{spot.start_m, to_sun};
+  const Ray ray{point_m, to_sun};
   const double own = around_.sun_density(to_sun);
   const double part = around_.beam() ? 1 : power_weight(own, around_.density(spot, to_eye, to_sun));
   const glm::dvec3 light =
       part * path.weights() * around_.reflect(spot, to_eye, to_sun) * around_.sun_W_per_m2_nm();
-  if (most(light) > 0 && !(around_.ground_m(ray) < kNoDistance_m))
+  if (most(light) > 0 && !(around_.ground_m(ray, true) < kNoDistance_m))
     path.add(light * passed(path, ray));
 
   const Surroundings::Way way = around_.sample(spot, to_eye, path.random);
   const glm::dvec3 reflected = around_.reflect(spot, to_eye, way.direction);
   if (!(way.density > 0) || !(most(reflected) > 0)) return false;
   path.throughput *= reflected / way.density;
-  path.ray = {spot.start_m, way.direction};
+  path.ray = {point_m, way.direction};
+  path.on_ground = true;
   path.last_density = way.density;
   path.thin_out();
   return path.alive;
