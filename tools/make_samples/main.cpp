@@ -32,7 +32,10 @@ constexpr const char* kUsage =
 
 constexpr const char* kHelp =
     "\nSamples (NAME): cumulus and plume (.vdb), forecast (in the form of WRF), les (a large-eddy\n"
-    "simulation in CF NetCDF), globe (a packed global analysis on 16 pressure levels).\n"
+    "simulation in CF NetCDF), globe (a packed global analysis on 16 pressure levels). By --only "
+    "alone:\n"
+    "pair, two clouds 26 km apart in one .vdb of 2128 x 192 x 1192 voxels, nearly all of them "
+    "empty.\n"
     "--size NXxNYxNZ makes one of the NetCDF samples (forecast where --only names none) with so "
     "many\n"
     "cells, one level in memory at a time, into NAME_NXxNYxNZ.nc; --times: of a forecast, hourly.\n"
@@ -121,6 +124,25 @@ void write_cumulus(const fs::path& folder, double scale) {
   report(folder / "cumulus.vdb", start_s);
 }
 
+// One cloud twice: a box of 487 million voxels, 1.9 GB where they are stored densely.
+void write_pair(const fs::path& folder) {
+  constexpr double kFiner = 1.6;
+  constexpr Voxel kApart{1872, 0, 936};  // 26.2 km
+  const double start_s = seconds();
+  CumulusShape shape;
+  shape.voxel_m /= kFiner;
+  for (auto& cells : shape.size) cells = 8 * std::int32_t(kFiner * cells / 8);
+  SampleGrid grid = make_cumulus(shape);
+  grid.value = VdbValue::kHalf;
+  std::vector<SampleBlock> twin = grid.blocks;
+  for (SampleBlock& block : twin)
+    for (std::size_t a = 0; a < 3; ++a) block.origin[a] += kApart[a];
+  grid.blocks.insert(grid.blocks.end(), twin.begin(), twin.end());
+  const fs::path path = folder / "pair.vdb";
+  VdbWriter(module_folders()).write(path, {grid});
+  report(path, start_s);
+}
+
 void write_plume(const fs::path& folder, double scale) {
   const VdbWriter writer(module_folders());
   PlumeSettings settings;
@@ -175,7 +197,7 @@ void write_globe(const fs::path& path, double scale, const Options& o) {
 
 // A build without OpenVDB or NetCDF makes what it can.
 bool can_write(const std::string& name) {
-  const bool vdb = name == "cumulus" || name == "plume";
+  const bool vdb = name == "cumulus" || name == "plume" || name == "pair";
   return fs::exists(module_folders().front() /
                     (vdb ? "nepho_vdb_writer.so" : "nepho_nc_writer.so"));
 }
@@ -186,6 +208,7 @@ void write_sample(const std::string& name, const fs::path& folder, double scale,
   const fs::path path = folder / (name + (o.cells ? "_" + o.size : "") + ".nc");
   if (name == "cumulus") write_cumulus(folder, scale);
   if (name == "plume") write_plume(folder, scale);
+  if (name == "pair") write_pair(folder);
   if (name == "forecast") write_forecast(path, scale, o);
   if (name == "les") write_les_sample(path, scale, o);
   if (name == "globe") write_globe(path, scale, o);
@@ -193,7 +216,7 @@ void write_sample(const std::string& name, const fs::path& folder, double scale,
 
 void write_large(const Options& o) {
   const std::string name = o.only.empty() ? "forecast" : o.only.front();
-  if (o.only.size() > 1 || name == "cumulus" || name == "plume")
+  if (o.only.size() > 1 || name == "cumulus" || name == "plume" || name == "pair")
     throw Error({"no such size of it", "--size " + o.size, "with --only forecast, les or globe",
                  "--only " + name, ""});
   if (name == "globe" && o.cells->nz != 16)
@@ -209,8 +232,9 @@ void write_large(const Options& o) {
 void write_samples(const Options& o) {
   std::vector<std::string> wanted = o.only.empty() ? kNames : o.only;
   for (const std::string& name : wanted)
-    if (std::ranges::find(kNames, name) == kNames.end())
-      throw Error({"no such sample", "--only", "cumulus, plume, forecast, les or globe", name, ""});
+    if (std::ranges::find(kNames, name) == kNames.end() && name != "pair")
+      throw Error(
+          {"no such sample", "--only", "cumulus, plume, forecast, les, globe or pair", name, ""});
   const fs::path folder = o.folder, note = folder / "samples.done";
   std::string text = "version " + std::to_string(kVersion) + ", size " + o.size;
   if (o.only.empty())

@@ -46,9 +46,12 @@ glm::dvec3 read_direction(const ObjectReader& in, std::string_view field) {
 Phase read_phase(const ObjectReader& in) {
   in.require("kind");
   Phase phase;
-  const bool mie = *in.text("kind") == "mie";
-  phase.kind = mie ? PhaseKind::kMie : PhaseKind::kHenyeyGreenstein;
-  const std::string_view foreign = mie ? "asymmetry" : "effective_radius_m";
+  const std::string kind = *in.text("kind");
+  phase.kind = kind == "mie"         ? PhaseKind::kMie
+               : kind == "hg_draine" ? PhaseKind::kHgDraine
+                                     : PhaseKind::kHenyeyGreenstein;
+  const bool droplets = phase.kind != PhaseKind::kHenyeyGreenstein;
+  const std::string_view foreign = droplets ? "asymmetry" : "effective_radius_m";
   if (in.has(foreign))
     throw Error({"does not belong to this phase function", in.where(foreign), "", "", ""});
   phase.effective_radius_m = in.number("effective_radius_m").value_or(phase.effective_radius_m);

@@ -24,7 +24,7 @@ constexpr FieldGrammar kPlaceFields[] = {
 constexpr ObjectGrammar kPlace{"place", kPlaceFields};
 
 constexpr FieldGrammar kPhaseFields[] = {
-    {"kind", kChoice, 0, 0, "mie|henyey_greenstein"},
+    {"kind", kChoice, 0, 0, "mie|henyey_greenstein|hg_draine"},
     {"effective_radius_m", kNumber, 1e-7, 1e-3},
     {"asymmetry", kNumber, -0.9999, 0.9999},
 };
