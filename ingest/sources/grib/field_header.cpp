@@ -76,8 +76,10 @@ FieldHeader header_of(const Message& message) {
   header.level = level_of(message);
   header.parameter = parameter_of(message, header.level);
   header.valid_ns = valid_time_ns(message);
-  const std::string step = message.text("stepType");
-  header.instant = step.empty() || step == "instant";
+  // Edition 2: a range of time is part of the templates that have one, whatever is done over it.
+  header.instant = message.need_integer("editionNumber") == 2
+                       ? !message.integer("numberOfTimeRange")
+                       : header.valid_ns.has_value();
   header.member = message.integer("perturbationNumber").value_or(0);
   return header;
 }

@@ -142,7 +142,7 @@ Choice usable_fields(const FieldTable& table) {
       const Key key{parameter.name, header.level.name, header.level.value, time};
       const auto [at, is_new] = places.emplace(key, int(n));
       if (is_new) continue;
-      if (!parameter.constant) ++twice;
+      twice += parameter.known && !parameter.constant && is_vertical(header.level.kind);
 #ifdef NEPHO_MUTANT_FIRST_OF_TWO
       continue;
 #endif

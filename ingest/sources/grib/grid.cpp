@@ -221,6 +221,8 @@ void polar_stereographic(const Message& message, Grid& grid) {
   MapSpec spec = spec_of(message, MapKind::kPolarStereographic);
   const bool south = message.integer("projectionCentreFlag").value_or(0) & 0x80;
   const double true_latitude = std::abs(message.number("LaDInDegrees").value_or(60));
+  if (!(true_latitude > 0 && true_latitude <= 90))
+    refuse(message, "steps at latitude " + short_number(true_latitude));
   spec.true_latitude1_deg = south ? -true_latitude : true_latitude;
   spec.central_longitude_deg = message.need_number("orientationOfTheGridInDegrees");
   put_name(grid, "polar_stereographic", {spec.equatorial_m, spec.polar_m});
@@ -289,6 +291,11 @@ void reduced(const Message& message, Grid& grid) {
 
 // What ecCodes itself can place: cell by cell.
 void by_places(Grid& grid, const std::function<Message*()>& whole) {
+  // ecCodes 2.28 puts rows that run south, and columns, where rows that run north belong.
+  if (grid.x_falls || grid.y_falls || grid.columns_first || grid.alternating) {
+    grid.why = "its rows do not run north, and its places are known for those only";
+    return;
+  }
   Message::Places places;
   if (Message* const message = whole()) places = message->places();
   if (places.latitude_deg.size() != grid.nx * grid.ny || grid.nx < 2 || grid.ny < 2) {
@@ -296,12 +303,8 @@ void by_places(Grid& grid, const std::function<Message*()>& whole) {
     return;
   }
   grid.kind = Grid::Kind::kPlaces;
-  const auto reorder = [&](const std::vector<double>& values) {
-    const std::vector<float> in_order = arranged(grid, values, grid.type);
-    return std::vector<double>(in_order.begin(), in_order.end());
-  };
-  grid.latitude_deg = reorder(places.latitude_deg);
-  grid.longitude_deg = reorder(places.longitude_deg);
+  grid.latitude_deg = std::move(places.latitude_deg);
+  grid.longitude_deg = std::move(places.longitude_deg);
 }
 
 void find_axes(const Message& message, Grid& grid, const std::function<Message*()>& whole) {

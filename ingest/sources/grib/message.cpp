@@ -20,6 +20,13 @@ constexpr long kMostPoints = 2'000'000'000;
                "the file is damaged: copy or download it again"});
 }
 
+void name_missing(std::vector<double>& values) {
+#ifndef NEPHO_MUTANT_BITMAP
+  for (double& value : values)
+    if (value == kMissing) value = NAN;
+#endif
+}
+
 void quiet() {
   static const bool once = [] {
     codes_context_set_logging_proc(codes_context_get_default(),
@@ -119,10 +126,7 @@ std::vector<double> Message::values() const {
     refuse(std::string(codes_get_error_message(status)) + " (" + packing + ")",
            "the file is damaged: copy or download it again");
   values.resize(count);
-#ifndef NEPHO_MUTANT_BITMAP
-  for (double& value : values)
-    if (value == kMissing) value = NAN;
-#endif
+  name_missing(values);
   return values;
 }
 
@@ -130,12 +134,13 @@ Message::Places Message::places() const {
   Places places;
   const auto count = integer("numberOfPoints");
   if (!count || *count <= 0 || *count > kMostPoints) return places;
-  places.latitude_deg.resize(std::size_t(*count));
-  places.longitude_deg.resize(std::size_t(*count));
-  std::vector<double> values(places.latitude_deg.size());
+  for (auto* list : {&places.latitude_deg, &places.longitude_deg, &places.value})
+    list->resize(std::size_t(*count));
+  codes_set_double(handle_->codes, "missingValue", kMissing);
   if (codes_grib_get_data(handle_->codes, places.latitude_deg.data(), places.longitude_deg.data(),
-                          values.data()) != CODES_SUCCESS)
+                          places.value.data()) != CODES_SUCCESS)
     return {};
+  name_missing(places.value);
   return places;
 }
 

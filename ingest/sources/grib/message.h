@@ -31,10 +31,10 @@ class Message {
   // Unpacked, in the message's own order; NaN where a value is missing. Throws Error on damage, and
   // on packings that this build of ecCodes cannot read.
   std::vector<double> values() const;
-  // Of all points in the message's own order, degrees, as ecCodes works them out; for grids that no
-  // map of ours tells, and for tests. Empty where it cannot.
+  // Values with their places, in ecCodes's order of points rather than the message's; for grids
+  // that no map of ours tells. Empty where it cannot.
   struct Places {
-    std::vector<double> latitude_deg, longitude_deg;
+    std::vector<double> latitude_deg, longitude_deg, value;
   };
   Places places() const;
 
