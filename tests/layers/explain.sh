@@ -22,7 +22,7 @@ case $kind in
     [ "$planet" = 0 ] || fail 'ran a pass of the planet'
     [ "$switches" = 0 ] || fail 'compiled a planet or a second channel'
     [ "$bytes" = 0.00 ] || fail "holds $bytes MiB of a planet"
-    part 'libraries that the scene' | grep -qE 'netcdf|hdf5|openvdb|OpenImageIO|gdal' &&
+    part 'libraries that the scene' | grep -qE 'netcdf|hdf5|eccodes|openvdb|OpenImageIO|gdal' &&
       fail 'loaded a library of data'
     grep -q '^  air and ground: the scene is on no planet$' "$scratch/said" || fail 'names no planet'
     grep -q '^  the second channel: no volume tells ice apart' "$scratch/said" || fail 'names no second channel'

@@ -290,9 +290,10 @@ VolumeSpec data_volume(const std::string& file) {
     volume.source = "netcdf";
     return volume;
   }
-  if (bytes.starts_with("GRIB"))
-    throw Error({"GRIB is not read", file, "NetCDF or VDB", "GRIB",
-                 "grib_to_netcdf (ecCodes) or cdo -f nc copy make NetCDF of it"});
+  if (bytes.starts_with("GRIB")) {
+    volume.source = "grib";
+    return volume;
+  }
   if (bytes.starts_with(std::string("II*\0", 4)) || bytes.starts_with(std::string("MM\0*", 4)))
     throw Error({"a raster is no cloud field", file, "NetCDF or VDB", "TIFF", ""});
   const std::string ending = ending_of(file);

@@ -37,6 +37,11 @@ struct Loaded {
 class ModelForecast : public Forecast {
  public:
   ModelForecast(Model model, bool force) : model_(std::move(model)), force_(force) {
+    const auto say = [](std::vector<std::string>& to, const std::vector<std::string>& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    say(model_.assumptions, model_.file->assumptions());
+    say(model_.facts, model_.file->facts());
     order_times();
     has_ice_ = std::ranges::any_of(model_.water, [](const WaterVariable& w) {
       return is_ice(w.species) || w.freezes_below_K > 0;

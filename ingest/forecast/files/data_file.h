@@ -51,6 +51,10 @@ class DataFile {
   std::string text(const std::string& name) const { return global_.text(name); }
   std::optional<double> number(const std::string& name) const { return global_.number(name); }
 
+  // What the format's reader took for granted, and what it left out: for `info`.
+  const std::vector<std::string>& assumptions() const { return assumptions_; }
+  const std::vector<std::string>& facts() const { return facts_; }
+
   std::size_t size(int dimension) const { return dimensions_[std::size_t(dimension)].size; }
   const std::string& name(int dimension) const { return dimensions_[std::size_t(dimension)].name; }
   std::vector<std::size_t> shape(const FileVariable& variable) const;
@@ -83,6 +87,7 @@ class DataFile {
   std::vector<FileDimension> dimensions_;
   std::vector<FileVariable> variables_;
   FileVariable global_;  // its attributes only
+  std::vector<std::string> assumptions_, facts_;
 };
 
 }  // namespace nepho::forecast

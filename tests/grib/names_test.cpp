@@ -1,0 +1,227 @@
+// Numbers of parameters and levels to names, units and vertical coordinates.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "grib_twin.h"
+
+namespace nepho::grib::test {
+namespace {
+
+std::string one(int edition, const Keys& what, const Keys& where, double value,
+                const Keys& more = {}) {
+  GribTwin here;
+  here.edition = edition;
+  Made made(edition, here.grid());
+  made.set(at_hour(edition, 0)).set(what).set(where).set(more);
+  made.set({{"bitsPerValue", 24}});
+  return made.values(std::vector<double>(30, value)).bytes();
+}
+
+Keys grib2(long centre, int discipline, int category, int number) {
+  return {{"centre", centre},
+          {"discipline", discipline},
+          {"parameterCategory", category},
+          {"parameterNumber", number}};
+}
+Keys grib1(long centre, int table, int number) {
+  return {{"centre", centre}, {"table2Version", table}, {"indicatorOfParameter", number}};
+}
+
+std::string at(const GribFile& file, const std::string& name, const std::string& attribute) {
+  const forecast::FileVariable* v = file.find(name);
+  return v ? v->text(attribute) : "no variable " + name;
+}
+
+// What centres send, by their own numbers: name and standard_name that conventions look for.
+TEST(GribNames, CentresHaveTheirNumbers) {
+  struct Case {
+    int edition;
+    Keys what;
+    const char *name, *standard_name;
+  };
+  const std::vector<Case> cases = {
+      // NCEP
+      {2, grib2(7, 0, 1, 22), "clwmr", ""},
+      {2, grib2(7, 0, 1, 23), "icmr", ""},
+      {2, grib2(7, 0, 1, 24), "rwmr", ""},
+      {2, grib2(7, 0, 1, 25), "snmr", ""},
+      {2, grib2(7, 0, 1, 32), "grle", ""},
+      {1, grib1(7, 2, 153), "clwmr", ""},
+      {1, grib1(7, 2, 178), "icmr", ""},
+      // ECMWF
+      {2, grib2(98, 0, 1, 83), "clwc", "mass_fraction_of_cloud_liquid_water_in_air"},
+      {2, grib2(98, 0, 1, 84), "ciwc", "mass_fraction_of_cloud_ice_in_air"},
+      {2, grib2(98, 0, 1, 85), "crwc", "mass_fraction_of_rain_in_air"},
+      {2, grib2(98, 0, 1, 86), "cswc", "mass_fraction_of_snow_in_air"},
+      {2, grib2(98, 0, 6, 32), "cc", "cloud_area_fraction_in_atmosphere_layer"},
+      {1, grib1(98, 128, 246), "clwc", "mass_fraction_of_cloud_liquid_water_in_air"},
+      {1, grib1(98, 128, 247), "ciwc", "mass_fraction_of_cloud_ice_in_air"},
+      {1, grib1(98, 128, 130), "t", "air_temperature"},
+      {1, grib1(98, 128, 133), "q", "specific_humidity"},
+      {1, grib1(98, 128, 248), "cc", "cloud_area_fraction_in_atmosphere_layer"},
+      // DWD
+      {2, grib2(78, 0, 1, 22), "qc", ""},
+      {2, grib2(78, 0, 1, 82), "qi", ""},
+      {2, grib2(78, 0, 1, 24), "qr", ""},
+      {2, grib2(78, 0, 1, 25), "qs", ""},
+      {2, grib2(78, 0, 1, 32), "qg", ""},
+      {2, grib2(78, 0, 6, 22), "clc", "cloud_area_fraction_in_atmosphere_layer"},
+      {1, grib1(78, 201, 31), "qc", ""},
+      {1, grib1(78, 201, 33), "qi", ""},
+      // HARMONIE
+      {1, grib1(82, 253, 76), "clwc", "mass_fraction_of_cloud_liquid_water_in_air"},
+      {1, grib1(82, 253, 58), "ciwc", "mass_fraction_of_cloud_ice_in_air"},
+      // All
+      {2, grib2(34, 0, 0, 0), "t", "air_temperature"},
+      {2, grib2(34, 0, 1, 0), "q", "specific_humidity"},
+      {2, grib2(34, 0, 1, 1), "r", "relative_humidity"},
+      {2, grib2(34, 0, 3, 5), "gh", "geopotential_height"},
+      {2, grib2(34, 0, 3, 4), "z", "geopotential"},
+      {1, grib1(34, 2, 11), "t", "air_temperature"},
+      {1, grib1(34, 2, 7), "gh", "geopotential_height"},
+  };
+  for (const Case& c : cases) {
+    const GribFile file(
+        {write_bytes("name.grib", one(c.edition, c.what, isobaric(c.edition, 500), 1e-4))}, {});
+    EXPECT_EQ(at(file, c.name, "standard_name"), c.standard_name) << c.name;
+    EXPECT_EQ(file.shape_text(*file.find(c.name)),
+              std::string(c.name) + "(time 1, isobaric 1, lat 5, lon 6)");
+    EXPECT_FALSE(at(file, c.name, "units").empty());
+  }
+  // Not a centre's number under the WMO's name: 11 of ECMWF's own table is no temperature.
+  const GribFile own({write_bytes("own.grib", one(1, grib1(98, 128, 11), isobaric(1, 500), 1))},
+                     {});
+  EXPECT_EQ(own.find("t"), nullptr);
+}
+
+TEST(GribNames, GroundIsNamedAsGround) {
+  for (const int edition : {1, 2}) {
+    const Keys ground = level(edition, 1, 1, 0);
+    std::string bytes = one(edition, parameter(edition, "clwmr"), isobaric(edition, 500), 1e-4);
+    bytes += one(edition, parameter(edition, "pres"), ground, 98000);
+    bytes += one(edition, parameter(edition, "z"), ground, 9806.65);
+    bytes += one(edition, parameter(edition, "lsm"), ground, 1);
+    bytes += one(edition, parameter(edition, "t"), ground, 300);
+    const GribFile file({write_bytes("ground.grib", bytes)}, {});
+    EXPECT_EQ(at(file, "sp", "standard_name"), "surface_air_pressure");
+    EXPECT_NEAR(all_of(file, "sp")[7], 98000, 0.1);
+    EXPECT_EQ(at(file, "orog", "standard_name"), "surface_altitude");
+    EXPECT_NEAR(all_of(file, "orog")[7], 1000, 1e-3);
+    EXPECT_EQ(at(file, "lsm", "standard_name"), "land_area_fraction");
+    EXPECT_EQ(file.shape(*file.find("orog")), (std::vector<std::size_t>{5, 6}));  // of no time
+  }
+}
+
+// One axis in Pa, whether a level is told in hPa or Pa.
+TEST(GribNames, PressuresAreOneAxis) {
+  std::string bytes = one(2, parameter(2, "clwmr"), isobaric(2, 850), 1e-4);
+  Keys fine = isobaric(2, 0.4);
+  bytes += one(2, parameter(2, "clwmr"), fine, 2e-4);
+  Keys tenth = level(2, 100, 100, 5);
+  for (Key& key : tenth)
+    if (key.name == "scaleFactorOfFirstFixedSurface") key.number = 1;
+  bytes += one(2, parameter(2, "clwmr"), tenth, 3e-4);
+  const GribFile file({write_bytes("pressures.grib2", bytes)}, {});
+  EXPECT_EQ(all_of(file, "isobaric"), (std::vector<double>{0.5, 40, 85000}));
+  EXPECT_EQ(at(file, "isobaric", "units"), "Pa");
+}
+
+// Half levels k = 0 ... 4 from the top; levels 2 and 3 of 4 are in the file.
+TEST(GribNames, HybridLevelsHaveTheirPressures) {
+  const std::vector<double> a = {0, 5000, 10000, 5000, 0}, b = {0, 0, 0.2, 0.7, 1};
+  std::vector<double> pv = a;
+  pv.insert(pv.end(), b.begin(), b.end());
+  const double pressure_Pa = 97000;
+  for (const int edition : {1, 2}) {
+    const auto on = [&](const char* name, long number, double value) {
+      GribTwin here;
+      here.edition = edition;
+      Made made(edition, here.grid());
+      made.set(at_hour(edition, 0)).set(parameter(edition, name));
+      made.set(level(edition, 105, 109, number)).set({{"PVPresent", 1}}).set("pv", pv);
+      made.set({{"bitsPerValue", 24}});
+      return made.values(std::vector<double>(30, value)).bytes();
+    };
+    const auto ecmwf = [&](int category, int number, int number1, double value) {
+      const Keys what = edition == 2 ? grib2(98, 0, category, number) : grib1(98, 128, number1);
+      return one(edition, what, level(edition, 105, 109, 1), value);
+    };
+    std::string bytes = on("clwmr", 2, 1e-4) + on("clwmr", 3, 2e-4);
+    bytes += on("t", 2, 250) + on("t", 3, 280);
+    bytes += ecmwf(3, 25, 152, std::log(pressure_Pa));  // lnsp, on level 1
+    bytes += ecmwf(3, 4, 129, 4903.325);                // the ground's geopotential, likewise
+    const GribFile file({write_bytes("hybrid.grib", bytes)}, {});
+    EXPECT_EQ(all_of(file, "hybrid"), (std::vector<double>{2, 3}));
+    EXPECT_EQ(at(file, "hybrid", "standard_name"), "atmosphere_hybrid_sigma_pressure_coordinate");
+    EXPECT_EQ(at(file, "hybrid", "formula_terms"), "ap: ap_hybrid b: b_hybrid ps: sp");
+    EXPECT_EQ(at(file, "hybrid_bnds", "formula_terms"),
+              "ap: ap_hybrid_bnds b: b_hybrid_bnds ps: sp");
+    const std::vector<double> ap = all_of(file, "ap_hybrid"), bb = all_of(file, "b_hybrid"),
+                              ap2 = all_of(file, "ap_hybrid_bnds"),
+                              b2 = all_of(file, "b_hybrid_bnds"), sp = all_of(file, "sp");
+    ASSERT_EQ(sp.size(), 30u);
+    EXPECT_NEAR(sp[3], pressure_Pa, 1);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_NEAR(ap[k], 0.5 * (a[k + 1] + a[k + 2]), 1e-2);
+      EXPECT_NEAR(bb[k], 0.5 * (b[k + 1] + b[k + 2]), 1e-6);
+      for (std::size_t edge = 0; edge < 2; ++edge) {
+        EXPECT_NEAR(ap2[2 * k + edge], a[k + 1 + edge], 1e-2);
+        EXPECT_NEAR(b2[2 * k + edge], b[k + 1 + edge], 1e-6);
+      }
+    }
+    EXPECT_NEAR(all_of(file, "orog")[0], 500, 1e-2);
+    EXPECT_EQ(file.find("z"), nullptr);
+  }
+}
+
+// Layers between HHL's levels, top down: cloud in the second layer of three.
+TEST(GribNames, HeightsOfLayersAreAField) {
+  const std::vector<double> limits_m = {3000, 2000, 800, 100};
+  const auto on_limit = [](long number) {
+    return Keys{{"typeOfLevel", "generalVertical"},
+                {"typeOfSecondFixedSurface", 101},
+                {"scaleFactorOfFirstFixedSurface", 0},
+                {"scaledValueOfFirstFixedSurface", number}};
+  };
+  const auto on_layer = [](long number) {
+    return Keys{{"typeOfLevel", "generalVerticalLayer"},
+                {"scaleFactorOfFirstFixedSurface", 0},
+                {"scaledValueOfFirstFixedSurface", number},
+                {"scaleFactorOfSecondFixedSurface", 0},
+                {"scaledValueOfSecondFixedSurface", number + 1}};
+  };
+  std::string bytes;
+  for (std::size_t k = 0; k < 4; ++k)
+    bytes += one(2, grib2(78, 0, 3, 6), on_limit(long(k) + 1), limits_m[k]);
+  for (long k = 1; k <= 3; ++k) {
+    bytes += one(2, grib2(78, 0, 1, 22), on_layer(k), k == 2 ? 3e-4 : 0);
+    bytes += one(2, grib2(78, 0, 0, 0), on_layer(k), 280);
+    bytes += one(2, grib2(78, 0, 3, 0), on_layer(k), 90000);
+  }
+  const auto forecast = open({write_bytes("cosmo.grib2", bytes)});
+  const forecast::ForecastColumns c = forecast->columns(0);
+  ASSERT_EQ(c.nz, 3);
+  for (std::size_t n = 0; n < 30; ++n) {
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(double(c.interface_m[n * 4 + k]), limits_m[3 - k], 0.1);
+    EXPECT_EQ(c.extinction_per_m[n * 3], 0);
+    EXPECT_GT(c.extinction_per_m[n * 3 + 1], 1e-3f);
+    EXPECT_EQ(c.extinction_per_m[n * 3 + 2], 0);
+  }
+  EXPECT_TRUE(says(forecast->facts(), "half levels hhl"));
+}
+
+TEST(GribNames, ColumnsAreNoLevels) {
+  const Keys whole = level(2, 10, 200, 0);
+  const std::string text =
+      refusal(write_bytes("column.grib2", one(2, grib2(7, 0, 1, 22), whole, 1e-4) +
+                                              one(2, parameter(2, "t"), isobaric(2, 500), 250)));
+  EXPECT_NE(text.find("no cloud water on levels"), std::string::npos) << text;
+  EXPECT_NE(text.find("t(time 1, isobaric 1"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace nepho::grib::test
