@@ -6,6 +6,7 @@ function(nepho_package_option name what)
 endfunction()
 nepho_package_option(OPENVDB "OpenVDB files (.vdb)")
 nepho_package_option(NETCDF "Forecasts in NetCDF files (.nc)")
+nepho_package_option(PROJ "Map projections beyond GeographicLib's, through PROJ")
 nepho_package_option(OIIO "PNG, EXR and HDR pictures through OpenImageIO")
 
 # nepho_package_missing(OPENVDB "text"): says so, or stops.

@@ -24,7 +24,7 @@ class HorizontalGrid {
   // x goes all the way round the planet: cell nx is cell 0.
   virtual bool around() const = 0;
   // Geodetic latitude and longitude (deg, longitude continuous along x, any multiple of a turn) at
-  // x in [0, nx], y in [0, ny].
+  // x in [0, nx], y in [0, ny]. NaN: off the planet, as cells beside a satellite's disc are.
   virtual glm::dvec2 lat_lon_deg(double x, double y) const = 0;
 };
 

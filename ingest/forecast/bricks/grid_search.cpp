@@ -27,9 +27,17 @@ GridSearch::GridSearch(std::shared_ptr<const HorizontalGrid> grid) : grid_(std::
   for (int j = 0; j < ny; j += step_)
     for (int i = 0; i < nx; i += step_) {
       const glm::dvec2 at = {i + 0.5, j + 0.5};
-      seeds_.push_back({at, direction(at)});
+      const glm::dvec3 u = direction(at);
+      if (!std::isnan(u.x)) seeds_.push_back({at, u});
     }
-  const glm::dvec2 middle = {nx / 2.0, ny / 2.0};
+  if (seeds_.empty()) seeds_.push_back({{nx / 2.0, ny / 2.0}, glm::dvec3(0.0)});
+  const auto to_middle = [&](const Seed& seed) {
+    return glm::length(seed.at - glm::dvec2(nx / 2.0, ny / 2.0));
+  };
+  const glm::dvec2 exact = {nx / 2.0, ny / 2.0};
+  const glm::dvec2 middle =
+      std::isnan(direction(exact).x) ? std::ranges::min_element(seeds_, {}, to_middle)->at : exact;
+  middle_ = middle;
   const glm::dvec3 here = direction(middle);
   cell_rad_ = std::min(glm::length(direction(middle - glm::dvec2(0.5, 0)) - here),
                        glm::length(direction(middle - glm::dvec2(0, 0.5)) - here)) *

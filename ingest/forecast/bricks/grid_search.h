@@ -25,6 +25,7 @@ class GridSearch {
 
   const HorizontalGrid& grid() const { return *grid_; }
   double cell_rad() const { return cell_rad_; }  // typical
+  glm::dvec2 middle() const { return middle_; }  // or the nearest place on the planet
 
  private:
   glm::dvec3 direction(glm::dvec2 at) const;
@@ -39,6 +40,7 @@ class GridSearch {
   };
   std::shared_ptr<const HorizontalGrid> grid_;
   double cell_rad_ = 0;
+  glm::dvec2 middle_{0.0};
   int step_ = 1;
   std::vector<Seed> seeds_;
 };

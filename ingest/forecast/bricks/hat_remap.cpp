@@ -46,8 +46,9 @@ int parts_of_walls(const HorizontalGrid& grid) {
   for (int j = 0; j < grid.ny(); j += step_y)
     for (int i = 0; i < grid.nx(); i += step_x) {
       const glm::dvec2 here = grid.lat_lon_deg(i, j);
-      longest_deg = std::max({longest_deg, angle_deg(here, grid.lat_lon_deg(i + 1, j)),
-                              angle_deg(here, grid.lat_lon_deg(i, j + 1))});
+      for (const glm::dvec2& next : {grid.lat_lon_deg(i + 1, j), grid.lat_lon_deg(i, j + 1)})
+        if (!std::isnan(here.x) && !std::isnan(next.x))
+          longest_deg = std::max(longest_deg, angle_deg(here, next));
     }
   return std::clamp(int(std::ceil(longest_deg / kSide_deg)), 1, 30);
 }

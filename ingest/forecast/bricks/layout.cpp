@@ -29,7 +29,7 @@ std::vector<CellSize> some_cells(const HorizontalGrid& grid) {
       const auto at = [&](double x, double y) { return unit_vector(grid.lat_lon_deg(x, y)); };
       const double x_m = radius_m * glm::length(at(i + 1, j + 0.5) - at(i, j + 0.5));
       const double y_m = radius_m * glm::length(at(i + 0.5, j + 1) - at(i + 0.5, j));
-      sizes.push_back({std::min(x_m, y_m), x_m * y_m});
+      if (!std::isnan(x_m * y_m)) sizes.push_back({std::min(x_m, y_m), x_m * y_m});
     }
   return sizes;
 }

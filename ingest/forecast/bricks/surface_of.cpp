@@ -92,22 +92,27 @@ void frame_region(SurfaceMap& map, const std::vector<Piece>& pieces, const Ellip
     return scaled_direction(body, grid.lat_lon_deg(x, y), 0);
   };
   const HorizontalGrid& first = pieces.front().search.grid();
-  const glm::dvec2 half = {first.nx() / 2.0, first.ny() / 2.0};
+  const glm::dvec2 half = pieces.front().search.middle();
   const glm::dvec3 centre = at(first, half.x, half.y);
   const glm::dvec3 along = at(first, half.x + std::min(0.5, half.x / 2), half.y) - centre;
   const glm::dvec3 east = glm::normalize(along - glm::dot(along, centre) * centre);
   map.axes = {centre, east, glm::cross(centre, east)};
   glm::dvec2 low(1e9), high(-1e9);
+  const auto include = [&](const glm::dvec3& u) {
+    if (std::isnan(u.x)) return;
+    low = glm::min(low, angles(map.axes, u));
+    high = glm::max(high, angles(map.axes, u));
+  };
   constexpr int kPoints = 64;
   for (const Piece& piece : pieces)
     for (int n = 0; n <= kPoints; ++n) {
       const HorizontalGrid& grid = piece.search.grid();
       const double nx = grid.nx(), ny = grid.ny(), x = nx * n / kPoints, y = ny * n / kPoints;
-      for (const glm::dvec3& u :
-           {at(grid, x, 0), at(grid, x, ny), at(grid, 0, y), at(grid, nx, y)}) {
-        low = glm::min(low, angles(map.axes, u));
-        high = glm::max(high, angles(map.axes, u));
-      }
+      for (const glm::dvec3& u : {at(grid, x, 0), at(grid, x, ny), at(grid, 0, y), at(grid, nx, y)})
+        include(u);
+      // A disc within the grid touches its edges nowhere.
+      if (std::isnan(at(grid, x, 0).x))
+        for (int row = 0; row <= kPoints; ++row) include(at(grid, x, ny * row / kPoints));
     }
   map.low_rad = low;
   map.step_rad = high - low;

@@ -25,6 +25,8 @@ struct CellExtent {
   Extent latitude_deg, longitude_deg;
 };
 CellExtent extent_of(const std::array<glm::dvec2, 4>& corner) {
+  for (const glm::dvec2& place : corner)
+    if (std::isnan(place.x)) return {{NAN, NAN}, {NAN, NAN}};
   CellExtent e{{corner[0].x, corner[0].x}, {corner[0].y, corner[0].y}};
   double longitude = corner[0].y, turned = 0;
   for (std::size_t n = 1; n <= 4; ++n) {
@@ -51,6 +53,7 @@ CellExtent extent_of(const std::array<glm::dvec2, 4>& corner) {
 }
 
 bool overlap(const CellExtent& cell, const Region& region) {
+  if (std::isnan(cell.latitude_deg.low + cell.longitude_deg.low)) return false;
   if (!(cell.latitude_deg.low < region.north_deg && cell.latitude_deg.high > region.south_deg))
     return false;
   // The cell turned to the first place that ends east of the region's western edge.

@@ -42,10 +42,12 @@ Role of_coordinate(const FileVariable& axis) {
   const std::string letter = axis.text("axis");
   if (is_time_unit(unit) || letter == "T" || standard == "time") return Role::kTime;
   if (is_north(unit) || letter == "Y" ||
-      any_of(standard, {"latitude", "grid_latitude", "projection_y_coordinate"}))
+      any_of(standard, {"latitude", "grid_latitude", "projection_y_coordinate",
+                        "projection_y_angular_coordinate"}))
     return Role::kY;
   if (is_east(unit) || letter == "X" ||
-      any_of(standard, {"longitude", "grid_longitude", "projection_x_coordinate"}))
+      any_of(standard, {"longitude", "grid_longitude", "projection_x_coordinate",
+                        "projection_x_angular_coordinate"}))
     return Role::kX;
   if (letter == "Z" || !axis.text("positive").empty() || unit_of(axis, kPressure).fits ||
       any_of(standard, {"height", "altitude", "air_pressure", "model_level_number"}) ||
