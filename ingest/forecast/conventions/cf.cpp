@@ -13,6 +13,7 @@
 #include "forecast/conventions/grid_mapping.h"
 #include "forecast/conventions/horizontal.h"
 #include "forecast/conventions/model.h"
+#include "forecast/conventions/unstructured.h"
 #include "forecast/conventions/vertical.h"
 #include "forecast/files/file_time.h"
 #include "forecast/water/air.h"
@@ -233,7 +234,8 @@ void check_dimensions(const CfFile& cf, const FileVariable& water) {
                    "choose one index first, for example with ncks -d " + cf.file->name(d) + ",0"});
 }
 
-Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& region) {
+Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& region,
+               const DataFile* grid_file) {
   const DataFile& file = *cf->file;
   const FileVariable& first = *first_water(file);
   cf->roles = dimension_roles(file, first);
@@ -246,7 +248,9 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   reader.time = cf->roles.time;
   reader.y = cf->roles.y;
   reader.x = cf->roles.x;
-  cf->grid = cf_grid(file, cf->roles, reader, first, model.assumptions);
+  cf->grid = cf->roles.cells >= 0
+                 ? unstructured_grid(file, grid_file, first, cf->roles.cells, model.assumptions)
+                 : cf_grid(file, cf->roles, reader, first, model.assumptions);
   reader.nx = cf->grid->nx();
   reader.ny = cf->grid->ny();
   if (region) cf->restrict_to(*region, model);
@@ -293,7 +297,9 @@ std::unique_ptr<Forecast> open_cf(std::shared_ptr<const DataFile> file,
                                   const OpenRequest& request) {
   auto cf = std::make_shared<CfFile>();
   cf->file = std::move(file);
-  return make_forecast(model_of(cf, request.region), request.force);
+  std::shared_ptr<const DataFile> grid_file;
+  if (!request.grid_file.empty()) grid_file = request.open_file(request.grid_file);
+  return make_forecast(model_of(cf, request.region, grid_file.get()), request.force);
 }
 
 }  // namespace

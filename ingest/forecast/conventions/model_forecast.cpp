@@ -157,6 +157,7 @@ CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& gri
 
 // Cells with a corner off a satellite's disc hold nothing.
 void clear_off_planet(const HorizontalGrid& grid, ForecastColumns& columns) {
+  if (grid.polygons()) return;
   const std::size_t nz = std::size_t(columns.nz), nx = std::size_t(columns.nx);
   for (std::size_t cell = 0; cell * nz < columns.extinction_per_m.size(); ++cell) {
     const double x = double(cell % nx), y = double(cell / nx);

@@ -7,6 +7,7 @@ namespace {
 
 // Parameters beside those of make_source():
 //   force   1 draws what is out of every cloud's range, and is else refused (0)
+//   grid    a file with the places of the cells (triangles, Voronoi's cells); the data's own
 //   region  "SOUTH,WEST,NORTH,EAST" in degrees: only cells there are read (the whole file)
 std::unique_ptr<BrickSource> open_source(const SourceRequest& request) {
   const std::string name = request.volume_name ? request.volume_name : "";
@@ -17,6 +18,7 @@ std::unique_ptr<BrickSource> open_source(const SourceRequest& request) {
   forecast::OpenRequest open;
   open.files.assign(request.files, request.files + request.file_count);
   open.force = parameters.integer("force", 0, 0, 1) == 1;
+  open.grid_file = parameters.word("grid", "");
   if (const std::string region = parameters.word("region", ""); !region.empty())
     open.region = forecast::parse_region(region, parameters.where("region"));
   return forecast::make_source(name, open_netcdf(open, request.io_lock), parameters);
