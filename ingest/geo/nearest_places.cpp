@@ -1,9 +1,13 @@
 #include "geo/nearest_places.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace nepho {
+namespace {
+constexpr double kAnyDistance = std::numeric_limits<double>::max();
+}
 
 // A heap, the farthest first.
 struct NearestPlaces::Found {
@@ -15,7 +19,7 @@ struct NearestPlaces::Found {
   std::size_t most;
   std::vector<Place> heap;
 
-  double reach() const { return heap.size() < most ? 8 : heap.front().squared; }
+  double reach() const { return heap.size() < most ? kAnyDistance : heap.front().squared; }
   void add(Place place) {
     if (place.squared >= reach()) return;
     if (heap.size() == most) {

@@ -419,6 +419,7 @@ void write_made(const std::filesystem::path& path, const std::string& grid_name,
   const MadeVertical vertical = made_vertical(vertical_name);
   TinyFile file;
   file.layout.notes = {text("Conventions", "CF-1.11"), text("source", "nephoscope make_samples")};
+  file.layout.format = NcFormat::kOffset64;
   file.layout.axes = {{"lev", kLevels}};
   grid.write(file);
   vertical.write(file, grid);

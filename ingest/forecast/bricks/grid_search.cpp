@@ -63,7 +63,7 @@ GridSearch::GridSearch(std::shared_ptr<const HorizontalGrid> grid) : grid_(std::
     }
     cells_ = std::make_shared<const PolygonCells>(
         PolygonCells{NearestPlaces(std::move(centres)), *polygons});
-    middle_ = {cells_->centres.nearest(sum, 1).front() + 0.5, 0.5};
+    middle_ = {cells_->centres.nearest(sum / (glm::length(sum) + 1e-300), 1).front() + 0.5, 0.5};
     cell_rad_ = polygon_width_rad(*polygons, std::size_t(middle_.x));
     return;
   }

@@ -7,6 +7,8 @@
 
 #include "accuracy_report.h"
 #include "bricks/coarsen.h"
+#include "core/error.h"
+#include "forecast/bricks/grid_search.h"
 #include "forecast/bricks/hat_remap.h"
 #include "forecast/bricks/layout.h"
 #include "made_file.h"
@@ -19,12 +21,16 @@ namespace {
 
 using namespace samples;
 constexpr double kDegree = 3.14159265358979323846 / 180;
-constexpr double kCorner_deg = 1e-3, kTotal = 2e-3, kHeight_m = 1;
+constexpr double kCorner_deg = 1e-5, kTotal = 2e-3, kHeight_m = 1;
 
 struct Case {
   std::string grid, vertical, order;
   std::string name() const { return grid + "_" + vertical + "_" + order; }
 };
+
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name();
+}
 
 // Every grid and every kind of levels, each in both orders: all pairs of a grid with an order and
 // of levels with an order, and of grids with levels those that a diagonal meets.
@@ -127,12 +133,6 @@ double farthest_deg(const std::vector<glm::dvec2>& of, const std::vector<glm::dv
   return worst;
 }
 
-// How far the file's cells end from where they do: curvilinear centres and Voronoi's cells are
-// interpolated, all others exact.
-double corner_bound_deg(const std::string& grid) {
-  return grid == "curvilinear" ? 1e-3 : grid == "centres" ? 1e-3 : kCorner_deg;
-}
-
 class Grids : public testing::TestWithParam<Case> {
  protected:
   fs::path made() const {
@@ -173,10 +173,13 @@ TEST_P(Grids, CloudIsReadWhereItIs) {
           {heights_m, std::abs(double(z[0]) - walls[k]), std::abs(double(z[1]) - walls[k + 1])});
     }
   }
-  report_accuracy("grids", "corners of cells: " + GetParam().grid, corners_deg,
-                  corner_bound_deg(GetParam().grid), "deg");
-  EXPECT_LE(corners_deg, corner_bound_deg(GetParam().grid)) << "degrees off the corners";
-  report_accuracy("grids", "heights of interfaces: " + GetParam().vertical, heights_m, kHeight_m,
+  const bool cells_in_a_row = grid.axes.size() == 1;
+  report_accuracy("grids",
+                  cells_in_a_row ? "corners of triangles and Voronoi's cells"
+                                 : "corners of cells on 17 grids of rows and columns",
+                  corners_deg, kCorner_deg, "deg");
+  EXPECT_LE(corners_deg, kCorner_deg) << "degrees off the corners";
+  report_accuracy("grids", "heights of interfaces on 21 kinds of levels", heights_m, kHeight_m,
                   "m");
   EXPECT_LE(heights_m, kHeight_m) << "metres off the heights";
   EXPECT_LE(extinction, 1e-4) << "off the extinction";
@@ -220,7 +223,9 @@ TEST_P(Grids, CloudIsDrawnWhereItIs) {
       middle += part * layout.chart->ecef_m({key.root(), layout.lattice.q(level, g)});
     }
   }
-  report_accuracy("grids", "optical depth of bricks against the file: " + GetParam().grid,
+  report_accuracy("grids",
+                  grid.axes.size() == 1 ? "optical depth of bricks against one cell in a row's"
+                                        : "optical depth of bricks against nine cells'",
                   std::abs(total / truth - 1), kTotal, "1");
   EXPECT_NEAR(total / truth, 1, kTotal) << "of the optical depth";
   const double off_m = 6.371e6 * glm::length(glm::normalize(middle) - glm::normalize(truth_middle));
@@ -228,7 +233,108 @@ TEST_P(Grids, CloudIsDrawnWhereItIs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Made, Grids, testing::ValuesIn(covering()),
-                         [](const auto& info) { return info.param.name(); });
+                         [](const auto& made) { return made.param.name(); });
+
+// A whole field on cells in a row: nothing is lost or counted twice between them, and the model's
+// own cells are found.
+TEST(CellsInARow, AllTogetherKeepTheirOpticalDepth) {
+  for (const char* name : {"icon", "mpas", "ugrid", "centres"}) {
+    const fs::path path = made_folder() / (std::string(name) + "_all.nc");
+    write_made(path, name, "height", "up", nc_writer());
+    Read read(path);
+    const MadeGrid grid = made_grid(name);
+    const std::vector<double> walls = made_vertical("height").interfaces_m(grid.cell(0));
+    const std::size_t nz = std::size_t(read.columns.nz);
+    double truth = 0, middle_m = (walls[6] + walls[7]) / 2;
+    for (std::size_t n = 0; n < grid.nx; ++n) {
+      const double value = 1e-3 * (1 + std::sin(0.1 * double(n)));
+      std::fill_n(&read.columns.extinction_per_m[n * nz], nz, 0.0f);
+      read.columns.extinction_per_m[n * nz + 6] = float(value);
+      const std::string cells = name;
+      // At the rim Voronoi's cells are no hexagons.
+      MadeCell cell = grid.cell(n);
+      if (cells == "centres") cell.outline_deg = read.corners_deg(n);
+      truth += double(float(value)) * area_m2(cell, middle_m) * (walls[7] - walls[6]);
+    }
+    const forecast::Layout layout = choose_layout(*read.forecast, {});
+    const forecast::HatRemap remap(
+        layout.chart, layout.lattice, *read.grid, read.columns,
+        forecast::RemapOptions{layout.extend_below_m, 0, forecast::Layers::kConstant});
+    double total = 0;
+    BrickSamples samples;
+    for (const NodeKey key : remap.nodes(forecast::HatRemap::Part::kTotal)) {
+      const HatWeights hats = owned_hats(*layout.chart, layout.lattice, key);
+      remap.samples(key, forecast::HatRemap::Part::kTotal, samples.data());
+      for (std::uint32_t at = 0; at < samples.size(); ++at)
+        total += samples[at] * hats.horizontal[at % 81] * hats.vertical[at / 81];
+    }
+    report_accuracy("grids", "optical depth of a whole field on cells in a row",
+                    std::abs(total / truth - 1), 5e-4, "1");
+    EXPECT_NEAR(total / truth, 1, 5e-4) << name;
+
+    const forecast::GridSearch search(read.grid);
+    for (std::size_t n = 0; n < grid.nx; n += 7) {
+      const auto found = search.find(read.centre_deg(n));
+      EXPECT_EQ(found.off_cells, 0);
+      EXPECT_EQ(std::size_t(found.at.x), n) << name;
+    }
+    EXPECT_GT(search.find({-70, 3}).off_cells, 100) << name;
+  }
+}
+
+// The same cells with their places in a file of their own.
+TEST(CellsInARow, PlacesMayBeInAnotherFile) {
+  const fs::path data = made_folder() / "data.nc", places = made_folder() / "places.nc";
+  write_made(data, "icon", "height", "up", nc_writer());
+  fs::copy_file(data, places);
+  int id = 0, variable = 0;
+  ASSERT_EQ(nc_open(data.c_str(), NC_WRITE, &id), NC_NOERR);
+  nc_redef(id);
+  for (const char* name : {"clat", "clon", "clat_bnds", "clon_bnds"}) {
+    ASSERT_EQ(nc_inq_varid(id, name, &variable), NC_NOERR);
+    ASSERT_EQ(nc_rename_var(id, variable, (std::string("q") + name).c_str()), NC_NOERR);
+  }
+  nc_close(id);
+  try {
+    open(data);
+    FAIL() << "cells without places were read";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("--grid FILE"), std::string::npos) << e.what();
+  }
+  const auto forecast = open(data, places.string());
+  const auto grid = forecast->grid(0);
+  EXPECT_LT(apart_deg(grid->lat_lon_deg(100.5, 0.5), made_grid("icon").cell(100).centre_deg), 1e-9);
+}
+
+// Beside a satellite's disc there is nothing, whatever the file holds there.
+TEST(Views, CellsOffTheDiscAreClear) {
+  const fs::path path = made_folder() / "disc.nc";
+  write_made(path, "goes", "height", "up", nc_writer());
+  int id = 0, variable = 0;
+  ASSERT_EQ(nc_open(path.c_str(), NC_WRITE, &id), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(id, "clw", &variable), NC_NOERR);
+  const std::vector<double> everywhere(20 * 20 * 24, 0.5);
+  ASSERT_EQ(nc_put_var_double(id, variable, everywhere.data()), NC_NOERR);
+  nc_close(id);
+  const Read read(path);
+  const MadeGrid grid = made_grid("goes");
+  std::size_t off = 0, on = 0;
+  for (std::size_t cell = 0; cell < grid.nx * grid.ny; ++cell) {
+    bool whole = true;
+    for (const glm::dvec2& p : grid.cell(cell).outline_deg) whole &= !std::isnan(p.x);
+    const bool drawn = read.columns.extinction_per_m[cell * 20 + 7] > 0;
+    EXPECT_EQ(drawn, whole) << cell;
+    (whole ? on : off) += 1;
+  }
+  EXPECT_GT(off, 50u);
+  EXPECT_GT(on, 100u);
+  // All that follows does without them.
+  const forecast::Layout layout = choose_layout(*read.forecast, {});
+  const forecast::HatRemap remap(layout.chart, layout.lattice, *read.grid, read.columns, {});
+  EXPECT_GT(remap.nodes(forecast::HatRemap::Part::kTotal).size(), 10u);
+  const forecast::GridSearch search(read.grid);
+  EXPECT_EQ(search.find(grid.cell(grid.cloudy[4]).centre_deg).off_cells, 0);
+}
 
 }  // namespace
 }  // namespace nepho::test
