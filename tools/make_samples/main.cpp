@@ -11,6 +11,7 @@
 #include "cumulus.h"
 #include "global_forecast.h"
 #include "les_field.h"
+#include "made_vertical.h"
 #include "nc_twins.h"
 #include "plume.h"
 #include "twins.h"
@@ -28,6 +29,7 @@ constexpr const char* kUsage =
     "usage: make_samples OUT_DIR [--only NAME,...] [--size small|default|large] [--force]\n"
     "       make_samples OUT_DIR [--only NAME] --size NXxNYxNZ [--times N]\n"
     "       make_samples OUT_DIR --like TWIN | all\n"
+    "       make_samples OUT_DIR --grid GRID --vertical VERTICAL [--order up|down]\n"
     "       make_samples --list\n";
 
 constexpr const char* kHelp =
@@ -42,14 +44,19 @@ constexpr const char* kHelp =
     "--like makes a small twin of a trap in real files. Example: a forecast of 200 x 200 x 40 "
     "cells\n"
     "and three times,\n"
-    "  make_samples /tmp/big --size 200x200x40 --times 3\n\nTwins:\n";
+    "  make_samples /tmp/big --size 200x200x40 --times 3\n\n"
+    "--grid and --vertical make GRID_VERTICAL_ORDER.nc: one cloud on a grid and on levels of "
+    "those\n"
+    "names (--list), levels from the ground up or the top down, by formulas that share nothing "
+    "with\n"
+    "the reader.\n\nTwins:\n";
 
 struct Cells {
   std::size_t nx = 0, ny = 0, nz = 0;
 };
 
 struct Options {
-  std::string folder, size = "default", like;
+  std::string folder, size = "default", like, grid, vertical, order = "up";
   std::vector<std::string> only;
   std::optional<Cells> cells;
   std::size_t times = 1;
@@ -83,6 +90,12 @@ bool parse(int count, char** words, Options& o) {
       o.times = std::size_t(std::max(0, std::atoi(words[++at])));
     } else if (word == "--like" && has_next) {
       o.like = words[++at];
+    } else if (word == "--grid" && has_next) {
+      o.grid = words[++at];
+    } else if (word == "--vertical" && has_next) {
+      o.vertical = words[++at];
+    } else if (word == "--order" && has_next) {
+      o.order = words[++at];
     } else if (word == "--only" && has_next) {
       std::istringstream names(words[++at]);
       for (std::string name; std::getline(names, name, ',');) o.only.push_back(name);
@@ -93,6 +106,7 @@ bool parse(int count, char** words, Options& o) {
     }
   }
   const bool known = o.size == "small" || o.size == "default" || o.size == "large" || o.cells;
+  if (o.grid.empty() != o.vertical.empty()) return false;
   const bool fits = o.times >= 1 && o.times <= 1000 && (o.times == 1 || o.cells);
   return known && fits && (o.list || o.help || !o.folder.empty());
 }
@@ -280,6 +294,21 @@ void print_twins() {
   for (const Twin& twin : twins()) std::printf("%-20s %s\n", twin.name.c_str(), twin.what.c_str());
   for (const NcTwin& twin : nc_twins())
     std::printf("%-20s %s\n", twin.name.c_str(), twin.what.c_str());
+  const auto list = [](const char* what, const std::vector<std::string>& names) {
+    std::printf("%s:", what);
+    for (const std::string& name : names) std::printf(" %s", name.c_str());
+    std::printf("\n");
+  };
+  list("--grid", made_grid_names());
+  list("--vertical", made_vertical_names());
+}
+
+void write_made_file(const Options& o) {
+  const fs::path path = fs::path(o.folder) / (o.grid + "_" + o.vertical + "_" + o.order + ".nc");
+  fs::create_directories(o.folder);
+  const double start_s = seconds();
+  write_made(path, o.grid, o.vertical, o.order, NcWriter(module_folders()));
+  report(path, start_s);
 }
 
 }  // namespace
@@ -291,6 +320,8 @@ int main(int count, char** words) {
     if (options.help) std::printf("%s%s", kUsage, kHelp);
     if (options.help || options.list)
       print_twins();
+    else if (!options.grid.empty())
+      write_made_file(options);
     else if (!options.like.empty())
       write_all_twins(options);
     else if (options.cells)
