@@ -7,7 +7,6 @@
 
 #include "reference/surface.h"
 
-extern const char* const nepho_shader_ground;
 extern const char* const nepho_shader_sun_map;
 extern const char* const nepho_shader_surface;
 
@@ -151,18 +150,6 @@ std::vector<PixelTexel> PlanetPasses::ground_distances(const std::string& switch
   dispatch_blocks(compile("surface", nepho_shader_surface, switches), width, height);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   return read_texels(met_.id(), width, height);
-}
-
-void PlanetPasses::draw_ground(PixelValues& values, const std::string& switches) {
-  const int width = request_.settings.width, height = request_.settings.height;
-  const Texture picture = make_texture_2d(width, height, GL_RGBA32F, GL_NEAREST);
-  glTextureSubImage2D(picture.id(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, values.seen.data());
-  glTextureSubImage2D(met_.id(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, values.met.data());
-  glBindImageTexture(0, picture.id(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
-  glBindImageTexture(1, met_.id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
-  dispatch_blocks(compile("ground", nepho_shader_ground, switches), width, height);
-  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-  values.seen = read_texels(picture.id(), width, height);
 }
 
 void PlanetPasses::add_to(RenderReport& report) const {

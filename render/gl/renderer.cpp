@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "gl/atlas.h"
 #include "gl/frame_data.h"
+#include "gl/ground_pass.h"
 #include "gl/light_samples.h"
 #include "gl/object.h"
 #include "gl/planet_passes.h"
@@ -18,6 +19,7 @@
 #include "tree/forest.h"
 
 extern const char* const nepho_shader_view;
+extern const char* const nepho_shader_ground;
 extern const char* const nepho_shader_light_sun;
 extern const char* const nepho_shader_light_sky;
 extern const char* const nepho_shader_light_fill;
@@ -61,6 +63,7 @@ class Renderer {
                                                                       std::size_t) const;
   void light_pass(const gl::Program& program, SampleList list, int entries_each = 1);
   void view();
+  void ground();
   void make_image();
   void check_overruns() const;
   void report();
@@ -75,7 +78,7 @@ class Renderer {
   gl::Texture atlas_, ice_atlas_, light_atlas_;
   gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_, ice_;
   gl::PixelValues values_;
-  gl::ViewReport view_report_;
+  gl::PixelReport view_report_, ground_report_;
   RenderResult result_;
 };
 
@@ -212,6 +215,12 @@ void Renderer::view() {
   view_report_ = gl::march_view(request_, forest_, program, values_);
 }
 
+void Renderer::ground() {
+  const gl::Program program = gl::compile("ground", nepho_shader_ground, defines(false));
+  ground_report_ =
+      gl::light_ground(request_, forest_, scene_.frame, planet_->scene(), program, values_);
+}
+
 void Renderer::make_image() {
   HdrImage& image = result_.image;
   image.width = request_.settings.width;
@@ -293,12 +302,15 @@ void Renderer::report() {
       scene_.bricks.size() * sizeof(LeafBrick) + scene_.ice.size() * sizeof(IceCodes);
   report.image_bytes =
       32 * std::uint64_t(request_.settings.width) * std::uint64_t(request_.settings.height);
-  if (view_report_.interpolates)
-    left_out(
-        "marches of %.1f %% of the pixels: interpolated, predicted to change the picture by "
-        "less than %.2g %% rms (%zu checked)",
-        100 * (1 - view_report_.marched_share), 100 * view_report_.predicted_rms,
-        view_report_.checks);
+  const auto interpolated = [&](const char* what, const gl::PixelReport& pixels) {
+    if (pixels.interpolates)
+      left_out(
+          "%s of %.1f %% of the pixels: interpolated, predicted to change the picture by "
+          "less than %.2g %% rms (%zu checked)",
+          what, 100 * (1 - pixels.marched_share), 100 * pixels.predicted_rms, pixels.checks);
+  };
+  interpolated("marches", view_report_);
+  interpolated("the ground's light", ground_report_);
   if (planet_)
     planet_->add_to(report);
   else
@@ -334,7 +346,7 @@ RenderResult Renderer::run() {
     timed("sun map", [&] { planet_->draw_sun_map(defines(false)); });
   if (planet_) timed("surface", [&] { values_.met = planet_->ground_distances(defines(false)); });
   timed("view", [&] { view(); });
-  if (planet_) timed("ground", [&] { planet_->draw_ground(values_, defines(false)); });
+  if (planet_) timed("ground", [&] { ground(); });
   make_image();
   check_overruns();
   if (request_.settings.probe_pixels > 0)
