@@ -190,8 +190,9 @@ void RayMarch::Trace::add_step(const End& first, const End& last, int halvings) 
   result_.optical_depth += x;
 }
 
-// Where light costs a look-up: the step against its halves, extrapolated from both; the error of
-// linear sources goes with the cube of a step's optical depth.
+// Where light costs a look-up: the step against its halves, in optical depth (a shell's cells are
+// curved) and light, extrapolated from both; the error of linear sources goes with the cube of a
+// step's optical depth.
 void RayMarch::Trace::add_looked_up(const End& first, const End& last, const glm::dvec3& s0,
                                     const glm::dvec3& s1, int halvings) {
   const End middle = end_at((first.t_m + last.t_m) / 2);
@@ -199,9 +200,10 @@ void RayMarch::Trace::add_looked_up(const End& first, const End& last, const glm
   const double x1 = step_depth(first.t_m, middle.t_m), x2 = step_depth(middle.t_m, last.t_m);
   const double x = x1 + x2, split = x > 0 ? x1 * x2 / (x * x) : 0.25;
   const double rest = split > 0.125 ? (1 - 3 * split) / (3 * split) : 0;
+  const double x_whole = step_depth(first.t_m, last.t_m);
   glm::dvec3 whole, halves;
   for (int c = 0; c < 3; ++c) {
-    whole[c] = f64::step_radiance(s0[c], s1[c], x);
+    whole[c] = f64::step_radiance(s0[c], s1[c], x_whole);
     halves[c] =
         f64::step_radiance(s0[c], sm[c], x1) + std::exp(-x1) * f64::step_radiance(sm[c], s1[c], x2);
   }

@@ -10,7 +10,8 @@ const float LEFT_OF_DEPTH = 0.5, LEFT_OF_SOURCE = 0.3;
 // Light that counts as if it were there already: a ray of less optical depth is hardly seen.
 const float FAINT = 0.005;
 // Voxels in a step at most: where there was nothing, no hat may fall between two samples.
-const float LONGEST_IN_CLEAR = 4.0, LONGEST = 12.0;
+float longest_in_clear() { return clamp(4.0 * sqrt(sqrt(100.0 * frame.tolerance)), 1.0, 4.0); }
+const float LONGEST = 12.0;
 
 float luminance_of(vec3 c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
 
@@ -23,7 +24,7 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
   if (march.fresh) {
     march.k0 = total_extinction_at(t);
     march.s0 = total_source_at(t);
-    march.longest = FAR;
+    march.longest = longest_in_clear() * voxel;
     march.fresh = false;
 #ifdef NEPHO_COUNT_SAMPLES
     extinction_count += 1u;
@@ -31,7 +32,7 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
 #endif
   }
   while (t < end) {
-    float most = smooth_ ? FAR : (march.k0 > 0.0 ? LONGEST : LONGEST_IN_CLEAR) * voxel;
+    float most = smooth_ ? FAR : (march.k0 > 0.0 ? LONGEST : longest_in_clear()) * voxel;
     float asked = max(min(march.longest, most), 4.0 * least_step(t)), ahead = end - t;
     // The last step ends on the wall itself, and no step is a small remainder.
     bool last = ahead < 1.1 * asked;
@@ -61,14 +62,17 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
                    DOUBT_OF_RAY * (luminance_of(seen.radiance) + here * max(FAINT * bright, exp(-x) * behind)));
     // Its error goes with the cube of its length.
     float by = 0.9 * pow(budget / max(doubt, 1e-30), 1.0 / 3.0);
-    if (doubt > budget && step_m > 4.0 * least_step(t)) {
+    // Thicker, and the source at three places says too little of it; less of it is seen behind cloud.
+    float thickest = min(2.0 * inversesqrt(max(here, 1e-6)), 10.0);
+    if (x > thickest) by = min(by, thickest / x);
+    if ((doubt > budget || x > thickest) && step_m > 4.0 * least_step(t)) {
       march.longest = step_m * clamp(by, 0.15, 0.7);
     } else {
       add_step(seen, light, x, t, step_m);
-      float grown = step_m * clamp(by, 0.5, 3.0);
+      float grown = step_m * clamp(by, 0.5, 2.0);
       // A step that ended at a wall tells nothing against longer ones.
       march.longest = step_m < 0.9 * asked ? max(grown, march.longest) : grown;
-      march.longest = min(march.longest, k1 > 0.0 ? 3.0 / k1 : FAR);
+      march.longest = min(march.longest, k1 > 0.0 ? 0.9 * thickest / k1 : FAR);
       march.s0 = s1;
       march.k0 = k1;
       if (next_t <= t) break;

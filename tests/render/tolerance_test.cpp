@@ -65,6 +65,8 @@ Measured measure(const MarchScene& scene, std::vector<Truth>& truths, const std:
     ++counted;
     const double t = pixel_luminance(truth, p);
     errors.push_back(std::abs(pixel_luminance(result.image, p) - t) / std::max(t, 1e-30));
+    if (std::getenv("NEPHO_WORST") && errors.back() > 1 * request.settings.tolerance)
+      std::printf("    (%zu, %zu): %.1e, luminance %.3e depth %.4f truth %.4f\n", p % 40, p / 40, errors.back(), t, double(result.image.optical_depth[p]), double(truth.optical_depth[p]));
     m.rms += errors.back() * errors.back();
   }
   m.rms = std::sqrt(m.rms / counted);
