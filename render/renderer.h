@@ -7,6 +7,7 @@
 
 #include "bricks/brick_source.h"
 #include "scene/scene.h"
+#include "tree/light_tiles.h"
 
 namespace nepho {
 
@@ -33,6 +34,8 @@ struct RenderRequest {
   bool leave_nothing_out = false;
   // For tests: marches the light of all samples, each where it is (gl/light_samples.h).
   bool march_all_light = false;
+  bool keep_lights = false;    // for tests: RenderResult::lights
+  bool count_samples = false;  // for tests: RenderReport::samples
 };
 
 // Linear HDR, row 0 at the top: radiance r, g, b (W m-2 sr-1 nm-1) and the view optical depth.
@@ -59,12 +62,17 @@ struct VolumeReport {
   std::uint64_t nodes = 0, bricks = 0, constant_nodes = 0, empty_nodes = 0, sun_tiles = 0;
   int finest_level_used = 0, finest_level = 0;
 };
+// What the view pass looked up, in all; counted on request.
+struct SampleCounts {
+  double rays = 0, extinction = 0, source = 0;
+};
 struct RenderReport {
   std::string device;                        // GL_RENDERER, GL_VERSION
   std::vector<std::string> shader_switches;  // what the compiled shaders hold
   std::vector<std::string> left_out;         // what this scene did not need
   std::vector<PassReport> passes;
   std::vector<VolumeReport> volumes;
+  SampleCounts samples;
   std::uint64_t atlas_bytes = 0, sun_bytes = 0, node_bytes = 0, staging_bytes = 0;  // in the budget
   std::uint64_t image_bytes = 0, source_bytes = 0, planet_bytes = 0;                // apart from it
 };
@@ -73,6 +81,7 @@ struct RenderResult {
   HdrImage image;
   ErrorEstimate error;
   RenderReport report;
+  std::shared_ptr<const LightTiles> lights;  // where they were to be kept
 };
 
 // Needs a current OpenGL 4.5 core context. Throws Error where GL refuses or the budget is too small

@@ -39,11 +39,21 @@ constexpr GLuint kSampleBinding = 4;  // the phases' in the view pass
 constexpr std::size_t kTilesPerDispatch =
     512;  // 729 samples each: within the 65535 groups of OpenGL 4.5
 
+// A part of what the tolerance allows.
+float least_transmittance(const RenderSettings& settings) {
+  const float most = settings.step_voxels ? kLeastTransmittance : 0.01f;
+  return std::clamp(0.1f * float(settings.tolerance), kLeastTransmittanceExact, most);
+}
+
 double process_cpu_s() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
+
+struct Counters {  // march.glsl: CounterBuffer
+  std::uint32_t overruns = 0, rays = 0, extinction_samples = 0, source_samples = 0;
+};
 
 class Renderer {
  public:
@@ -65,7 +75,8 @@ class Renderer {
   void view();
   void ground();
   void make_image();
-  void check_overruns() const;
+  void keep_lights();
+  void read_counters();
   void report();
 
   const RenderRequest& request_;
@@ -76,7 +87,7 @@ class Renderer {
   std::optional<gl::PlanetPasses> planet_;  // absent: no planet
   std::array<int, 3> atlas_size_{}, light_size_{};
   gl::Texture atlas_, ice_atlas_, light_atlas_;
-  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_, ice_;
+  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, counters_, ice_;
   gl::PixelValues values_;
   gl::PixelReport view_report_, ground_report_;
   RenderResult result_;
@@ -132,6 +143,7 @@ std::string Renderer::defines(bool lit) const {
   if (scene_.absorbs) define("ABSORPTION");
   if (scene_.has_ice) define("ICE");
   if (lit) define("LIT");
+  if (request_.count_samples) define("COUNT_SAMPLES");
   if (planet_) text += planet_->defines();
   define("SUN_STEP", std::to_string(s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0));
 #ifdef NEPHO_MUTANT_SHADER  // tests: one planted mistake, by name
@@ -152,11 +164,11 @@ void Renderer::upload() {
   bricks_ = gl::Buffer(std::span<const BrickRecord>(scene_.bricks));
   phases_ = gl::Buffer(std::span<const float>(scene_.phases));
   lit_ = gl::Buffer(std::span<const LitRecord>(scene_.lit));
-  const std::uint32_t none = 0;
-  overruns_ = gl::Buffer(&none, sizeof none);
+  const Counters none{};
+  counters_ = gl::Buffer(&none, sizeof none);
   GLuint binding = 0;
   for (const gl::Buffer* buffer :
-       {&frame_, &volumes_, &nodes_, &bricks_, &phases_, &lit_, &overruns_})
+       {&frame_, &volumes_, &nodes_, &bricks_, &phases_, &lit_, &counters_})
     buffer->bind(binding++);
   glBindTextureUnit(0, atlas_.id());
   glBindTextureUnit(1, light_atlas_.id());
@@ -210,6 +222,32 @@ void Renderer::light() {
   light_samples_.reset();
 }
 
+// The light tiles, out of their texture.
+void Renderer::keep_lights() {
+  LightTiles tiles;
+  std::size_t count = 0;
+  for (const VolumeTree& tree : forest_.volumes) {
+    tiles.first.push_back(count);
+    count += tree.lit_nodes;
+  }
+  tiles.channels = sky_light() ? 4 : 1;
+  const auto channels = std::size_t(tiles.channels);
+  const auto [nx, ny, nz] = light_size_;
+  std::vector<float> texels(channels * gl::texels(light_size_));
+  glGetTextureImage(light_atlas_.id(), 0, sky_light() ? GL_RGBA : GL_RED, GL_FLOAT,
+                    GLsizei(sizeof(float) * texels.size()), texels.data());
+  tiles.values.reserve(count * 729 * channels);
+  for (std::size_t tile = 0; tile < count; ++tile) {
+    const auto [x, y, z] = gl::tile_origin(tile, light_size_);
+    for (int s = 0; s < 729; ++s) {
+      const auto row = std::size_t((z + s / 81) * ny + y + s / 9 % 9);
+      const float* texel = &texels[channels * (row * std::size_t(nx) + std::size_t(x + s % 9))];
+      tiles.values.insert(tiles.values.end(), texel, texel + channels);
+    }
+  }
+  result_.lights = std::make_shared<const LightTiles>(std::move(tiles));
+}
+
 void Renderer::view() {
   const gl::Program program = gl::compile("view", nepho_shader_view, defines(true));
   view_report_ = gl::march_view(request_, forest_, program, values_);
@@ -237,10 +275,13 @@ void Renderer::make_image() {
 
 // llvmpipe ends all loops of an invocation after 65535 iterations: a picture that lost some is
 // refused, not shown.
-void Renderer::check_overruns() const {
-  std::uint32_t count = 0;
+void Renderer::read_counters() {
+  Counters counters;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetNamedBufferSubData(overruns_.id(), 0, sizeof count, &count);
+  glGetNamedBufferSubData(counters_.id(), 0, sizeof counters, &counters);
+  result_.report.samples = {double(counters.rays), double(counters.extinction_samples),
+                            double(counters.source_samples)};
+  const std::uint32_t count = counters.overruns;
   if (count == 0) return;
   throw Error({.what = "rays needed more steps than this OpenGL device runs",
                .where = "render",
@@ -338,7 +379,8 @@ RenderResult Renderer::run() {
     forest_ = build_forest(request_.volumes, gl::refinement_of(request_));
     scene_ = gl::make_gpu_scene(request_, forest_);
     if (request_.planet) planet_.emplace(request_, forest_);
-    scene_.frame.least_transmittance = exact() ? kLeastTransmittanceExact : kLeastTransmittance;
+    scene_.frame.least_transmittance =
+        exact() ? kLeastTransmittanceExact : least_transmittance(request_.settings);
   });
   timed("upload", [&] { upload(); });
   light();
@@ -348,7 +390,8 @@ RenderResult Renderer::run() {
   timed("view", [&] { view(); });
   if (planet_) timed("ground", [&] { ground(); });
   make_image();
-  check_overruns();
+  read_counters();
+  if (request_.keep_lights) keep_lights();
   if (request_.settings.probe_pixels > 0)
     timed("error probe", [&] {
       result_.error =

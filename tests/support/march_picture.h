@@ -7,8 +7,9 @@
 namespace nepho::test {
 
 // The whole picture by the reference march: exact, and slow.
-inline HdrImage march_picture(const LevelSet& levels, const RenderRequest& request) {
-  const RayMarch march(levels, request);
+inline HdrImage march_picture(const LevelSet& levels, const RenderRequest& request,
+                              MarchSettings settings = {}) {
+  const RayMarch march(levels, request, std::move(settings));
   HdrImage image;
   image.width = request.settings.width;
   image.height = request.settings.height;
