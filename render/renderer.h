@@ -50,12 +50,13 @@ struct HdrImage {
 struct ErrorEstimate {
   double integration = -1, level_of_detail = -1, quantisation = -1, light_model = -1;
   int probe_pixels = 0;           // on which the first three were measured
-  std::string light_model_basis;  // "table, slabs"
+  std::string light_model_basis;  // "16 paths a pixel", or "table, slabs"
 };
 
 struct PassReport {
   std::string name;
-  double cpu_s = 0;  // process CPU time
+  double cpu_s = 0;   // process CPU time
+  double gpu_s = -1;  // by the GPU's own clock; -1: it tells none (gl/gpu_clock.h)
 };
 struct VolumeReport {
   std::string name;

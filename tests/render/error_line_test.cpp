@@ -242,7 +242,7 @@ TEST_F(ErrorLine, HoldsWithinThreeOnScenesDrawnFromASeed) {
                         picture_error(cut, finest));
     EXPECT_GE(result.error.quantisation, 0);
     EXPECT_LE(result.error.quantisation, 1e-3);
-    EXPECT_EQ(result.error.light_model_basis, "table, slabs");
+    EXPECT_NE(result.error.light_model_basis.find("paths a pixel"), std::string::npos);
   }
 }
 

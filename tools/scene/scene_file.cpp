@@ -228,6 +228,7 @@ void read_render(const ObjectReader& in, RenderSettings& settings) {
   settings.max_level = in.integer("max_level").value_or(settings.max_level);
   settings.seed = std::uint64_t(in.number("seed").value_or(double(settings.seed)));
   settings.probe_pixels = in.integer("probe_pixels").value_or(settings.probe_pixels);
+  settings.probe_paths = in.integer("probe_paths").value_or(settings.probe_paths);
   if (const auto engine = in.text("engine"))
     settings.engine = *engine == "march" ? Engine::kMarch : Engine::kReference;
   if (const auto paths = in.object("paths")) {

@@ -136,6 +136,7 @@ constexpr FieldGrammar kRenderFields[] = {
     {"max_level", kInteger, 0, 31},
     {"seed", kInteger, 0, kLargestExact},
     {"probe_pixels", kInteger, 0, 1e6},
+    {"probe_paths", kInteger, 0, 1e6},
     {"engine", kChoice, 0, 0, "march|reference"},
     {"paths", kObject, 0, 0, {}, &kPaths},
 };

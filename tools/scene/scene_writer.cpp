@@ -126,6 +126,7 @@ Json write_render(const RenderSettings& settings) {
   out["max_level"] = settings.max_level;
   out["seed"] = settings.seed;
   out["probe_pixels"] = settings.probe_pixels;
+  out["probe_paths"] = settings.probe_paths;
   if (settings.engine == Engine::kMarch) return out;
   out["engine"] = "reference";
   Json& paths = out["paths"];
