@@ -50,7 +50,8 @@ struct ErrorEstimate {
 
 struct PassReport {
   std::string name;
-  double cpu_s = 0;  // process CPU time
+  double cpu_s = 0;   // process CPU time
+  double gpu_s = -1;  // by the GPU's own clock; -1: it tells none (gl/gpu_clock.h)
 };
 struct VolumeReport {
   std::string name;

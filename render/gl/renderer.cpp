@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "gl/atlas.h"
 #include "gl/frame_data.h"
+#include "gl/gpu_clock.h"
 #include "gl/light_samples.h"
 #include "gl/object.h"
 #include "gl/planet_passes.h"
@@ -91,10 +92,12 @@ bool Renderer::parabolas() const {
 
 void Renderer::timed(const char* name, const std::function<void()>& work) {
   const double before_s = process_cpu_s();
+  gl::GpuClock clock;
   work();
+  const double gpu_s = clock.stop_s();
   glFinish();
   gl::check_errors(name);
-  result_.report.passes.push_back({name, process_cpu_s() - before_s});
+  result_.report.passes.push_back({name, process_cpu_s() - before_s, gpu_s});
 }
 
 std::string Renderer::defines(bool lit) const {
