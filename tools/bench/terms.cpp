@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "bench/text.h"
 #include "common/metrics.h"
 #include "image/difference.h"
 #include "image/flip.h"
@@ -27,16 +28,11 @@ double mean_luminance(const HdrImage& image) {
   return sum / double(pixels);
 }
 
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
-  return text;
-}
-
 // Never a number that is noise: why there is none, and what would give one.
 std::string why_withheld(double rms, const Doubt& doubt) {
   if (kLeastRatio * doubt.noise > rms) {
-    std::string text = "the truth's noise of " + percent(doubt.noise) + " is above a fifth of it";
+    std::string text =
+        "the truth's noise of " + percent_text(doubt.noise) + " is above a fifth of it";
     if (!(rms > 0)) return text + "; more paths are needed (--spp)";
     const double ratio = kLeastRatio * doubt.noise / rms;
     char needed[96];
@@ -44,7 +40,7 @@ std::string why_withheld(double rms, const Doubt& doubt) {
                   std::ceil(1.2 * ratio * ratio * doubt.paths));
     return text + needed;
   }
-  return "a stricter reference differs by " + percent(doubt.change) +
+  return "a stricter reference differs by " + percent_text(doubt.change) +
          ", above a fifth of it; finer references are needed (--finest-step, --host-mib)";
 }
 

@@ -4,7 +4,10 @@
 #include <fstream>
 
 #include "bench/csv.h"
+#include "bench/page.h"
+#include "bench/pareto.h"
 #include "bench/run.h"
+#include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/scene_input.h"
 #include "cli/values.h"
@@ -92,7 +95,7 @@ class ReportFolder {
   ReportFolder& operator=(const ReportFolder&) = delete;
 
   void check() const { OutputFile(folder_ / "bench.csv", 1 << 20); }
-  void write(const char* name, const std::string& text) const {
+  void write(const std::string& name, const std::string& text) const {
     OutputFile file(folder_ / name, text.size());
     std::ofstream out(file.temporary(), std::ios::binary | std::ios::trunc);
     out << text;
@@ -101,10 +104,82 @@ class ReportFolder {
     file.commit();
   }
 
+  // Its bytes, by way of a file that goes again.
+  std::string png_of(const ByteImage& image, const PictureFiles& pictures) const {
+    const OutputFile file(folder_ / "picture.png", 4 * image.values.size() + (64u << 10));
+    pictures.write(file.temporary(), PictureFormat::kPng, image, {}, {});
+    std::ifstream in(file.temporary(), std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
  private:
   fs::path folder_;
   bool made_ = false;
 };
+
+bool writes_png(const PictureFiles& pictures) {
+  try {
+    pictures.check_format("picture.png");
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+// As one could type it.
+std::string command_line(const BenchOptions& options) {
+  std::string text = "nephoscope bench";
+  for (const std::string& scene : options.scenes) text += " " + fs::path(scene).filename().string();
+  for (const std::string& sweep : options.sweeps) text += " --sweep " + sweep;
+  for (const auto& [name, value] :
+       {std::pair{"--size", &options.size}, std::pair{"--repeat", &options.repeats},
+        std::pair{"--spp", &options.spp}, std::pair{"--exact-orders", &options.exact_orders},
+        std::pair{"--host-mib", &options.host_mib},
+        std::pair{"--finest-step", &options.finest_step}})
+    if (*value) text += std::string(" ") + name + " " + **value;
+  return text;
+}
+
+// The file's name; of two files with one name, the second is NAME-2.
+std::string name_of(const BenchOptions& options, std::size_t scene) {
+  const std::string name = fs::path(options.scenes[scene]).stem().string();
+  int same = 1;
+  for (std::size_t before = 0; before < scene; ++before)
+    same += fs::path(options.scenes[before]).stem().string() == name;
+  return same > 1 ? name + "-" + std::to_string(same) : name;
+}
+
+void write_report(const std::vector<bench::SceneResult>& results, const BenchOptions& options,
+                  const PictureFiles& pictures, const ReportFolder& folder) {
+  const bool png = writes_png(pictures);
+  const std::string page = bench::page_of(
+      results, command_line(options),
+      [&](const ByteImage& image) { return png ? folder.png_of(image, pictures) : std::string(); });
+  folder.write("bench.csv", bench::settings_csv(results));
+  folder.write("terms.csv", bench::terms_csv(results));
+  for (const bench::SceneResult& result : results)
+    if (const auto pareto = bench::pareto_of(result))
+      folder.write(results.size() > 1 ? "pareto-" + result.name + ".svg" : "pareto.svg",
+                   bench::svg_of(pareto->chart));
+  folder.write("index.html", page);
+}
+
+// What a setting costs and how far it is off, and why a number is missing.
+void print_summary(const bench::SceneResult& result) {
+  const char* judged = bench::judged_by(result.settings);
+  for (const bench::SettingResult& s : result.settings) {
+    const bench::Term* term = bench::find_term(s.terms, judged);
+    std::printf("%s: %s: frame %s CPU, error %s\n", result.name.c_str(), s.setting.label().c_str(),
+                bench::time_text(s.times.frame_s.median).c_str(),
+                term->told() ? bench::percent_text(term->rms).c_str()
+                             : ("withheld: " + term->withheld).c_str());
+  }
+  if (const auto pareto = bench::pareto_of(result))
+    std::printf("%s: %s\n", result.name.c_str(), bench::lesson_of(result, *pareto).c_str());
+  const bench::Term* light = bench::find_term(result.settings.front().terms, bench::kLightModel);
+  if (light && !light->told())
+    std::printf("%s: light model: withheld: %s\n", result.name.c_str(), light->withheld.c_str());
+}
 
 }  // namespace
 
@@ -123,12 +198,12 @@ void bench_command(const BenchOptions& options) {
     bench::Progress progress;
     for (std::size_t s = 0; s < scenes.size(); ++s) {
       const OpenedScene opened = open_scene(host, scenes[s]);
-      const std::string name = fs::path(options.scenes[s]).stem().string();
-      results.push_back(bench::run_scene(opened, name, goals, progress));
+      results.push_back(bench::run_scene(opened, name_of(options, s), goals, progress));
     }
   }
-  folder.write("bench.csv", bench::settings_csv(results));
-  folder.write("terms.csv", bench::terms_csv(results));
+  write_report(results, options, pictures, folder);
+  for (const bench::SceneResult& result : results) print_summary(result);
+  std::printf("%s\n", (fs::path(options.output) / "index.html").c_str());
 }
 
 }  // namespace nepho
