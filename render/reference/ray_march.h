@@ -32,6 +32,9 @@ class PlanetModel;
 struct MarchSettings {
   double source_tolerance = 1e-4;
   double least_transmittance = 1e-6;  // the ray ends there
+  // Every piece (a cell) is halved as often, whatever the estimate says of its ends: a source that
+  // is the same at both and another between them is not seen by it.
+  int least_halvings = 0;
 };
 
 struct MarchResult {

@@ -31,7 +31,7 @@ struct Times {
 
 struct SettingResult {
   Setting setting;
-  RenderSettings settings;
+  RenderSettings settings = {};
   Times times = {};
   std::uint64_t bricks = 0;
   HdrImage picture = {};

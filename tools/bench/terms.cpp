@@ -49,17 +49,30 @@ Term measure(const char* name, const HdrImage& picture, const HdrImage& truth, c
   const PictureDifference d = difference(picture, truth);
   Term term{.name = name};
   if (d.same_bits) return term;
+#ifdef NEPHO_MUTANT_BENCH_NOISE_KEPT
+  const double squared = d.relative_rms * d.relative_rms;
+#else
   const double squared = d.relative_rms * d.relative_rms - doubt.noise * doubt.noise;
+#endif
   term.rms = std::sqrt(std::max(squared, 0.0));
   const double least = kLeastRatio * std::max(doubt.change, doubt.noise);
-  if (!(term.rms >= least)) {
+#ifdef NEPHO_MUTANT_BENCH_NOISE_TOLD
+  const bool told = true;
+#else
+  const bool told = term.rms >= least;
+#endif
+  if (!told) {
     term.withheld = why_withheld(term.rms, doubt);
     term.below = std::max(least, d.relative_rms);
     term.rms = 0;
     return term;
   }
   term.bias = d.bias;
+#ifdef NEPHO_MUTANT_BENCH_BIAS
+  term.bias_of_truth = d.bias * (scale_of_truth > 0);
+#else
   term.bias_of_truth = (mean_luminance(picture) - mean_luminance(truth)) / scale_of_truth;
+#endif
   term.relative_mse = d.relative_mse;
   const ByteImage a = shown(display, picture), b = shown(display, truth);
   term.rmse_8bit = byte_difference(a, b).rmse;
