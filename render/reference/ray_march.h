@@ -36,6 +36,9 @@ struct MarchSettings {
   // Light of a picture's own tiles rather than marched from each place: what is left of the
   // difference is how the view ray is integrated. The levels are then the cut that these are of.
   std::shared_ptr<const LightTiles> lights = nullptr;
+  // Every piece (a cell) is halved as often, whatever the estimate says of its ends: a source that
+  // is the same at both and another between them is not seen by it.
+  int least_halvings = 0;
 };
 
 struct MarchResult {

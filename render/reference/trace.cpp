@@ -164,9 +164,10 @@ void RayMarch::Trace::add_step(const End& first, const End& last, int halvings) 
   const glm::dvec3 j0 = length_m * (first.air.sunlit + first.air.other),
                    j1 = length_m * (last.air.sunlit + last.air.other);
   const double l0 = luminance(s0), l1 = luminance(s1);
-  if (halvings < kMaxHalvings && (too_curved(l0, l1, -std::expm1(-x), std::max(l0, l1)) ||
-                                  too_curved(luminance(j0), luminance(j1), 1, std::max(l0, l1)) ||
-                                  std::max({y.r, y.g, y.b}) > kAirStep)) {
+  if (halvings < march_.settings_.least_halvings ||
+      (halvings < kMaxHalvings && (too_curved(l0, l1, -std::expm1(-x), std::max(l0, l1)) ||
+                                   too_curved(luminance(j0), luminance(j1), 1, std::max(l0, l1)) ||
+                                   std::max({y.r, y.g, y.b}) > kAirStep))) {
     const End middle = end_at((first.t_m + last.t_m) / 2);
     add_step(first, middle, halvings + 1);
     add_step(middle, last, halvings + 1);
