@@ -10,7 +10,7 @@
 #include "gl/frame_data.h"
 #include "gl_fixture.h"
 #include "host/source_host.h"
-#include "march_picture.h"
+#include "reference/march_picture.h"
 #include "random.h"
 #include "reference/error_metric.h"
 #include "scenes.h"

@@ -10,7 +10,7 @@
 #include "accuracy_report.h"
 #include "gl/frame_data.h"
 #include "gl_fixture.h"
-#include "march_picture.h"
+#include "reference/march_picture.h"
 #include "reference/error_metric.h"
 #include "tolerance_scenes.h"
 
