@@ -142,7 +142,8 @@ const FileVariable& need_axis(const DataFile& file, int dimension, const FileVar
 
 std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const DimensionRoles& roles,
                                               const FieldReader& reader, const FileVariable& water,
-                                              std::vector<std::string>& assumptions) {
+                                              std::vector<std::string>& assumptions,
+                                              std::string& how) {
   const std::string where =
       file.path() + " [" + file.name(roles.y) + ", " + file.name(roles.x) + "]";
   const bool has_fields = roles.latitude && file.size(roles.x) > 1 && file.size(roles.y) > 1;
@@ -160,6 +161,8 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const Dimens
     }
     if (grid && (!has_fields || cells_apart(*grid, *fields) < kMapsPlace_cells)) {
       assumptions.insert(assumptions.end(), said.begin(), said.end());
+      const std::string name = mapping->text("grid_mapping_name");
+      how = "map " + (name.empty() ? mapping->name : name);
       return grid;
     }
     assumptions.push_back("The map " + mapping->name +
@@ -167,7 +170,9 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const Dimens
                           (grid ? " the file's latitudes and longitudes, which are taken."
                                 : " the file's latitudes and longitudes."));
   }
+  how = "fields " + (has_fields ? roles.latitude->name + ", " + roles.longitude->name : "");
   if (has_fields) return grid_of_fields(file, roles, std::move(*fields));
+  how = "axes " + file.name(roles.y) + ", " + file.name(roles.x);
   const FileVariable& y = need_axis(file, roles.y, water);
   const FileVariable& x = need_axis(file, roles.x, water);
   const auto latitude = degrees(file, y, names::kLatitude);

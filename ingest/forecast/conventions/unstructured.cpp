@@ -180,7 +180,8 @@ void check_polygons(const CellPolygons& polygons, const std::string& where) {
 
 std::unique_ptr<HorizontalGrid> unstructured_grid(const DataFile& file, const DataFile* grid_file,
                                                   const FileVariable& water, int dimension,
-                                                  std::vector<std::string>& assumptions) {
+                                                  std::vector<std::string>& assumptions,
+                                                  std::string& how) {
   const std::size_t cells = file.size(dimension);
   for (const DataFile* from : {grid_file, &file}) {
     if (!from) continue;
@@ -198,6 +199,9 @@ std::unique_ptr<HorizontalGrid> unstructured_grid(const DataFile& file, const Da
       polygons = voronoi_cells(places);
     }
     check_polygons(*polygons, from->path());
+    how = "cells in a row";
+    if (centres) how += ", " + centres.latitude->name + ", " + centres.longitude->name;
+    if (from == grid_file) how += " of " + from->path();
     return std::make_unique<PolygonGrid>(std::move(places), std::move(*polygons));
   }
   const std::string size = std::to_string(cells) + " cells";
