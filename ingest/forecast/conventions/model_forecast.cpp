@@ -155,17 +155,23 @@ CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& gri
   return setting;
 }
 
-// Cells with a corner off a satellite's disc hold nothing.
+// Cells with a corner off a satellite's disc, or without corners, hold nothing.
 void clear_off_planet(const HorizontalGrid& grid, ForecastColumns& columns) {
-  if (grid.polygons()) return;
   const std::size_t nz = std::size_t(columns.nz), nx = std::size_t(columns.nx);
-  for (std::size_t cell = 0; cell * nz < columns.extinction_per_m.size(); ++cell) {
-    const double x = double(cell % nx), y = double(cell / nx);
-    const double sum = grid.lat_lon_deg(x, y).x + grid.lat_lon_deg(x + 1, y).x +
-                       grid.lat_lon_deg(x, y + 1).x + grid.lat_lon_deg(x + 1, y + 1).x;
-    if (!std::isnan(sum)) continue;
+  const auto clear = [&](std::size_t cell) {
     for (std::vector<float>* values : {&columns.extinction_per_m, &columns.ice_extinction_per_m})
       if (!values->empty()) std::fill_n(values->begin() + std::ptrdiff_t(cell * nz), nz, 0.0f);
+  };
+  for (std::size_t cell = 0; cell * nz < columns.extinction_per_m.size(); ++cell) {
+    const double x = double(cell % nx), y = double(cell / nx);
+    if (const CellPolygons* polygons = grid.polygons()) {
+      if (polygons->first[cell + 1] > polygons->first[cell]) continue;
+      clear(cell);
+      continue;
+    }
+    const double sum = grid.lat_lon_deg(x, y).x + grid.lat_lon_deg(x + 1, y).x +
+                       grid.lat_lon_deg(x, y + 1).x + grid.lat_lon_deg(x + 1, y + 1).x;
+    if (std::isnan(sum)) clear(cell);
   }
 }
 

@@ -20,7 +20,9 @@ std::unique_ptr<HorizontalGrid> unstructured_grid(const DataFile& file, const Da
                                                   std::vector<std::string>& assumptions,
                                                   std::string& how);
 
-// The same of cells [first, first + count): what a region leaves of it.
-std::unique_ptr<HorizontalGrid> some_polygons(const HorizontalGrid& grid, int first, int count);
+// The same of cells [first, first + inside.size()): what a region leaves of it. Those that are not
+// inside have no corners.
+std::unique_ptr<HorizontalGrid> some_polygons(const HorizontalGrid& grid, int first,
+                                              const std::vector<char>& inside);
 
 }  // namespace nepho::forecast
