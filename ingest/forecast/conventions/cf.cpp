@@ -249,6 +249,9 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   reader.y = cf->roles.y;
   reader.x = cf->roles.x;
   std::string how;
+  if (grid_file && cf->roles.cells < 0)
+    model.facts.push_back("The grid file " + grid_file->path() +
+                          " is not used: the data have rows and columns.");
   cf->grid = cf->roles.cells >= 0 ? unstructured_grid(file, grid_file, first, cf->roles.cells,
                                                       model.assumptions, how)
                                   : cf_grid(file, cf->roles, reader, first, model.assumptions, how);
