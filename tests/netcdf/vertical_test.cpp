@@ -213,6 +213,17 @@ TEST(Maps, WhatIsNotKnownIsNamed) {
               {"the satellite's height is missing", "perspective_point_height"});
   expect_says(refusal(map_file("bad_wkt", {{"crs_wkt", "PROJCRS[\"nothing\"]"}})),
               {"PROJ does not understand this map"});
+  // What is written for another variable does not move longitudes and latitudes.
+  const std::string path = folder() / "stray.nc";
+  {
+    NcWriter nc(path);
+    add_grid(nc, 2);
+    nc.variable("lev", NC_DOUBLE, {"lev"}, {100, 300},
+                {{"units", "m"}, {"standard_name", "altitude"}});
+    nc.variable("crs", NC_INT, {}, {0}, {{"grid_mapping_name", "lambert_conformal_conic"}});
+    add_field(nc, "clw", {1e-4, 1e-4}, {{"units", "kg m-3"}});
+  }
+  EXPECT_NEAR(open(path)->grid(0)->lat_lon_deg(0.5, 0.5).x, 10, 1e-9);
   // A sphere of GRIB's size is taken, and said.
   const auto forecast = open(map_file("bare", {{"grid_mapping_name", "mercator"}}));
   bool said = false;

@@ -128,6 +128,17 @@ const FileVariable* axis_of(const DataFile& file, int dimension) {
   return at == file.variables().end() ? nullptr : &*at;
 }
 
+// Axes that say that they are latitude and longitude are no map's, whatever else the file holds.
+bool is_geographic(const DataFile& file, const DimensionRoles& roles) {
+  const FileVariable *y = axis_of(file, roles.y), *x = axis_of(file, roles.x);
+  const auto says = [](const FileVariable* axis, const char* direction, const char* grid) {
+    return axis && axis->text("units").starts_with(direction) &&
+           axis->text("standard_name") != grid;
+  };
+  return (says(y, "degrees_n", "grid_latitude") || says(y, "degree_n", "grid_latitude")) &&
+         (says(x, "degrees_e", "grid_longitude") || says(x, "degree_e", "grid_longitude"));
+}
+
 const FileVariable& need_axis(const DataFile& file, int dimension, const FileVariable& water) {
   const FileVariable* axis = axis_of(file, dimension);
   if (!axis)
@@ -150,6 +161,7 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const Dimens
   std::optional<Fields> fields;
   if (has_fields) fields = fields_of(file, roles, reader);
   const FileVariable* mapping = map_of(file, water);
+  if (mapping && is_geographic(file, roles)) mapping = nullptr;
   if (mapping && (!has_fields || (axis_of(file, roles.y) && axis_of(file, roles.x)))) {
     std::vector<std::string> said;
     std::shared_ptr<const HorizontalGrid> grid;
