@@ -53,7 +53,10 @@ using Text = std::optional<std::string>;
 
 void add_data_options(CLI::App& command, Text& grid, Text& up, Text& metres_per_unit,
                       Text& density_scale, Text& frame) {
-  command.add_option("--grid", grid, "name of the grid to draw (VDB)")->group("Data");
+  command
+      .add_option("--grid", grid,
+                  "name of the grid to draw (VDB); file with the cells' places (NetCDF)")
+      ->group("Data");
   command.add_option("--up", up, "up axis of the file: y or z (VDB)")->group("Data");
   command.add_option("--metres-per-unit", metres_per_unit, "size of one world unit of the file")
       ->group("Data");
