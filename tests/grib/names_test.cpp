@@ -127,6 +127,9 @@ TEST(GribNames, PressuresAreOneAxis) {
   const GribFile file({write_bytes("pressures.grib2", bytes)}, {});
   EXPECT_EQ(all_of(file, "isobaric"), (std::vector<double>{0.5, 40, 85000}));
   EXPECT_EQ(at(file, "isobaric", "units"), "Pa");
+  const GribFile first(
+      {write_bytes("pressures.grib1", one(1, parameter(1, "clwmr"), isobaric(1, 850), 1e-4))}, {});
+  EXPECT_EQ(all_of(first, "isobaric"), (std::vector<double>{85000}));
 }
 
 // Half levels k = 0 ... 4 from the top; levels 2 and 3 of 4 are in the file.

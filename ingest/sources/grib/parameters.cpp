@@ -184,7 +184,11 @@ constexpr std::array kLevels1 = {NamedLevel{1, LevelKind::kSurface, "surface"},
                                  NamedLevel{109, LevelKind::kHybrid, "hybrid"},
                                  NamedLevel{110, LevelKind::kHybrid, "hybridLayer"}};
 
+#ifdef NEPHO_MUTANT_UNITS_HPA
+constexpr double kPaPerHpa = 1;
+#else
 constexpr double kPaPerHpa = 100;
+#endif
 
 }  // namespace
 
