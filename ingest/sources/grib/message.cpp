@@ -27,7 +27,7 @@ bool is_plain(const std::string& packing) {
   return packing == "grid_simple" || packing == "grid_ieee";
 }
 
-void name_missing(std::vector<double>& values) {
+void name_missing([[maybe_unused]] std::vector<double>& values) {
 #ifndef NEPHO_MUTANT_BITMAP
   for (double& value : values)
     if (value == kMissing) value = NAN;
