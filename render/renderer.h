@@ -7,6 +7,7 @@
 
 #include "bricks/brick_source.h"
 #include "scene/scene.h"
+#include "tree/light_tiles.h"
 
 namespace nepho {
 
@@ -31,6 +32,10 @@ struct RenderRequest {
   RenderSettings settings;
   // For tests: does also what was predicted to change nothing (RenderReport::left_out).
   bool leave_nothing_out = false;
+  // For tests: marches the light of all samples, each where it is (gl/light_samples.h).
+  bool march_all_light = false;
+  bool keep_lights = false;    // for tests: RenderResult::lights
+  bool count_samples = false;  // for tests: RenderReport::samples
 };
 
 // Linear HDR, row 0 at the top: radiance r, g, b (W m-2 sr-1 nm-1) and the view optical depth.
@@ -45,17 +50,22 @@ struct HdrImage {
 struct ErrorEstimate {
   double integration = -1, level_of_detail = -1, quantisation = -1, light_model = -1;
   int probe_pixels = 0;           // on which the first three were measured
-  std::string light_model_basis;  // "table, slabs"
+  std::string light_model_basis;  // "16 paths a pixel", or "table, slabs"
 };
 
 struct PassReport {
   std::string name;
-  double cpu_s = 0;  // process CPU time
+  double cpu_s = 0;   // process CPU time
+  double gpu_s = -1;  // by the GPU's own clock; -1: it tells none (gl/gpu_clock.h)
 };
 struct VolumeReport {
   std::string name;
   std::uint64_t nodes = 0, bricks = 0, constant_nodes = 0, empty_nodes = 0, sun_tiles = 0;
   int finest_level_used = 0, finest_level = 0;
+};
+// What the view pass looked up, in all; counted on request.
+struct SampleCounts {
+  double rays = 0, extinction = 0, source = 0;
 };
 struct RenderReport {
   std::string device;                        // GL_RENDERER, GL_VERSION
@@ -63,6 +73,7 @@ struct RenderReport {
   std::vector<std::string> left_out;         // what this scene did not need
   std::vector<PassReport> passes;
   std::vector<VolumeReport> volumes;
+  SampleCounts samples;
   std::uint64_t atlas_bytes = 0, sun_bytes = 0, node_bytes = 0, staging_bytes = 0;  // in the budget
   std::uint64_t image_bytes = 0, source_bytes = 0, planet_bytes = 0;                // apart from it
 };
@@ -71,6 +82,7 @@ struct RenderResult {
   HdrImage image;
   ErrorEstimate error;
   RenderReport report;
+  std::shared_ptr<const LightTiles> lights;  // where they were to be kept
 };
 
 // Needs a current OpenGL 4.5 core context. Throws Error where GL refuses or the budget is too small

@@ -24,10 +24,10 @@ struct ChannelInfo {
 // What a sample of the finest level is (lattice.md 2): a mean over its hat, or the field's value.
 enum class SampleKind : std::uint8_t { kHat, kPoint };
 
-enum class PhaseKind : std::uint8_t { kMie, kHenyeyGreenstein };
+enum class PhaseKind : std::uint8_t { kMie, kHenyeyGreenstein, kHgDraine };
 struct Phase {
   PhaseKind kind = PhaseKind::kMie;
-  double effective_radius_m = 10e-6;  // Mie
+  double effective_radius_m = 10e-6;  // Mie, and its fit by HG + Draine
   double asymmetry = 0.85;            // Henyey-Greenstein
 };
 

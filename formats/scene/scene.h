@@ -120,6 +120,8 @@ struct RenderSettings {
   int max_level = 31;           // and at this level
   std::uint64_t seed = 1;
   int probe_pixels = 128;  // pixels on which the error line is measured; 0 = none
+  // Paths on each of them, at most, that measure the light model; 0: a table of plane slabs instead.
+  int probe_paths = 256;
   Engine engine = Engine::kMarch;
   PathGoals paths;  // of Engine::kReference; neither goal given: 5 % of noise
 };

@@ -14,6 +14,13 @@ namespace nepho::forecast {
 //
 //   DataFile --conventions/*--> Forecast --bricks/*--> samples --pyramid--> BrickSource
 
+// Cells of any shape: corners [first[cell], first[cell + 1]) in order around each, latitude and
+// longitude (deg). Walls are great circles; cells are convex, or nearly.
+struct CellPolygons {
+  std::vector<std::uint32_t> first;
+  std::vector<glm::dvec2> corner_deg;
+};
+
 // Where the cells of a model grid lie. Cell (i, j) covers [i, i+1] x [j, j+1]; i runs along the
 // fastest axis of ForecastColumns, both in the file's own order (rows may run south).
 class HorizontalGrid {
@@ -24,8 +31,11 @@ class HorizontalGrid {
   // x goes all the way round the planet: cell nx is cell 0.
   virtual bool around() const = 0;
   // Geodetic latitude and longitude (deg, longitude continuous along x, any multiple of a turn) at
-  // x in [0, nx], y in [0, ny].
+  // x in [0, nx], y in [0, ny]. NaN: off the planet, as cells beside a satellite's disc are.
   virtual glm::dvec2 lat_lon_deg(double x, double y) const = 0;
+  // Where cells are no rows and columns (triangles, Voronoi's cells): nx of them, ny is 1, and
+  // lat_lon_deg is the centre of the cell floor(x). Null for all other grids.
+  virtual const CellPolygons* polygons() const { return nullptr; }
 };
 
 // One time of a forecast: nz layers per cell, from the ground up, in model cells [j * nx + i].

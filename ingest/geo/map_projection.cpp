@@ -27,9 +27,15 @@ glm::dvec2 rotate(glm::dvec2 lat_lon_deg, double pole_latitude_deg, double from_
           to_deg + std::atan2(-y, -along) / kDegree};
 }
 
-}  // namespace
+class GeographicMap : public MapFormula {
+ public:
+  explicit GeographicMap(const MapSpec& of);
+  glm::dvec2 map_m(glm::dvec2 lat_lon_deg) const override {
+    return forward(lat_lon_deg) - origin_m;
+  }
+  glm::dvec2 lat_lon_deg(glm::dvec2 map_m) const override { return reverse(map_m + origin_m); }
 
-struct MapProjection::Impl {
+ private:
   MapSpec spec;
   std::optional<GeographicLib::LambertConformalConic> conic;
   std::optional<GeographicLib::PolarStereographic> polar;
@@ -45,7 +51,7 @@ struct MapProjection::Impl {
     // The rotated pole, seen from the rotated system, lies on its meridian 0.
     if (spec.kind == MapKind::kRotated) {
       const glm::dvec2 rotated = rotate(place, spec.pole_latitude_deg, spec.pole_longitude_deg, 0);
-      return {rotated.y, rotated.x};
+      return {rotated.y + spec.pole_grid_longitude_deg, rotated.x};
     }
     return {x, y};
   }
@@ -58,30 +64,29 @@ struct MapProjection::Impl {
       lon += spec.central_longitude_deg;
     }
     if (spec.kind == MapKind::kRotated)
-      return rotate({m.y, m.x}, spec.pole_latitude_deg, 0, spec.pole_longitude_deg);
+      return rotate({m.y, m.x - spec.pole_grid_longitude_deg}, spec.pole_latitude_deg, 0,
+                    spec.pole_longitude_deg);
     return {lat, lon};
   }
 };
 
-MapProjection::MapProjection(const MapSpec& spec) {
-  auto impl = std::make_shared<Impl>();
-  impl->spec = spec;
+GeographicMap::GeographicMap(const MapSpec& of) : spec(of) {
   const double a = spec.equatorial_m, f = (spec.equatorial_m - spec.polar_m) / spec.equatorial_m;
   try {
     switch (spec.kind) {
       case MapKind::kLambertConformal:
-        impl->conic.emplace(a, f, spec.true_latitude1_deg, spec.true_latitude2_deg, 1.0);
+        conic.emplace(a, f, spec.true_latitude1_deg, spec.true_latitude2_deg, spec.scale);
         break;
       case MapKind::kMercator:
-        impl->conic.emplace(a, f, spec.true_latitude1_deg, -spec.true_latitude1_deg, 1.0);
+        conic.emplace(a, f, spec.true_latitude1_deg, -spec.true_latitude1_deg, spec.scale);
         break;
       case MapKind::kPolarStereographic:
-        impl->north = spec.true_latitude1_deg > 0;
-        impl->polar.emplace(a, f, 1.0);
-        impl->polar->SetScale(std::abs(spec.true_latitude1_deg), 1.0);
+        north = spec.true_latitude1_deg > 0;
+        polar.emplace(a, f, 1.0);
+        polar->SetScale(std::abs(spec.true_latitude1_deg), spec.scale);
         break;
       case MapKind::kTransverseMercator:
-        impl->transverse.emplace(a, f, spec.scale);
+        transverse.emplace(a, f, spec.scale);
         break;
       case MapKind::kRotated:
         break;
@@ -91,18 +96,14 @@ MapProjection::MapProjection(const MapSpec& spec) {
                  "standard latitudes of a map", e.what(), ""});
   }
   // Polar maps have their origin at the pole.
-  if (impl->conic || impl->transverse)
-    impl->origin_m = impl->forward({spec.origin_latitude_deg, spec.central_longitude_deg});
-  impl->origin_m -= glm::dvec2(spec.false_easting_m, spec.false_northing_m);
-  impl_ = std::move(impl);
+  if (conic || transverse)
+    origin_m = forward({spec.origin_latitude_deg, spec.central_longitude_deg});
+  origin_m -= glm::dvec2(spec.false_easting_m, spec.false_northing_m);
 }
 
-glm::dvec2 MapProjection::map_m(glm::dvec2 lat_lon_deg) const {
-  return impl_->forward(lat_lon_deg) - impl_->origin_m;
-}
+}  // namespace
 
-glm::dvec2 MapProjection::lat_lon_deg(glm::dvec2 map_m) const {
-  return impl_->reverse(map_m + impl_->origin_m);
-}
+MapProjection::MapProjection(const MapSpec& spec)
+    : formula_(std::make_shared<GeographicMap>(spec)) {}
 
 }  // namespace nepho

@@ -4,6 +4,7 @@
 #include <GeographicLib/Math.hpp>
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 
 namespace nepho {
 namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
 
 using GeographicLib::Geocentric;
 
@@ -75,6 +78,15 @@ Placement placement_of(const GeodeticPlace& place) {
     result.axes[6 + n] = up;
   }
   return result;
+}
+
+glm::dvec3 unit_vector(glm::dvec2 lat_lon_deg) {
+  const double lat = lat_lon_deg.x * kDegree, lon = lat_lon_deg.y * kDegree;
+  return {std::cos(lat) * std::cos(lon), std::cos(lat) * std::sin(lon), std::sin(lat)};
+}
+
+glm::dvec2 lat_lon_deg_of(const glm::dvec3& u) {
+  return {std::atan2(u.z, std::hypot(u.x, u.y)) / kDegree, std::atan2(u.y, u.x) / kDegree};
 }
 
 }  // namespace nepho

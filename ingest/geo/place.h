@@ -21,6 +21,10 @@ struct GeodeticPoint {
 glm::dvec3 ecef_m(const Ellipsoid& body, const GeodeticPoint& point);
 GeodeticPoint geodetic_point(const Ellipsoid& body, glm::dvec3 ecef_m);
 
+// Directions on the sphere of latitudes and longitudes, in degrees.
+glm::dvec3 unit_vector(glm::dvec2 lat_lon_deg);
+glm::dvec2 lat_lon_deg_of(const glm::dvec3& unit_vector);
+
 // A local frame on WGS 84: z up along the ellipsoid's normal; y horizontal, towards the azimuth
 // heading_deg (clockwise from north); x to the right of y. At heading 0: east, north, up. The axes
 // are orthonormal to 1e-15; origin as ecef_m(). Throws Error as above.

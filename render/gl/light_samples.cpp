@@ -69,7 +69,7 @@ struct LightSamples::Place {
   std::array<std::uint32_t, 3> first{}, step{};
 };
 
-LightSamples::LightSamples(const Forest& forest) {
+LightSamples::LightSamples(const Forest& forest, bool all) {
   std::vector<Place> places;
   for (std::size_t v = 0; v < forest.volumes.size(); ++v) {
     const VolumeTree& tree = forest.volumes[v];
@@ -80,7 +80,7 @@ LightSamples::LightSamples(const Forest& forest) {
     for (const TreeNode& node : tree.nodes) {
       if (!node.seen || (node.kind != NodeKind::kBrick && node.kind != NodeKind::kConstant))
         continue;
-      if (node.kind == NodeKind::kBrick)
+      if (node.kind == NodeKind::kBrick && !all)
         needed_[first + node.lit] = needed_of(tree.bricks[node.brick]);
       Place& place = places[first + node.lit];
       place.volume_root = std::uint32_t(8 * v) + std::uint32_t(node.key.root());
@@ -97,6 +97,7 @@ LightSamples::LightSamples(const Forest& forest) {
       for (int x = 0; x < kSide; x += 2) every_second.set(std::size_t(index_of(x, y, z)));
   for (const Mask& mask : needed_) coarse_.push_back(grown(mask) & every_second);
   owned_ = needed_;
+  if (all) return;
   share(places, owned_, shared_);
   share(places, coarse_, shared_coarse_);
 }
@@ -164,6 +165,12 @@ std::vector<std::uint32_t> listed(const std::vector<std::array<std::uint32_t, 2>
 
 }  // namespace
 
+double LightSamples::spared_share() const {
+  std::size_t marched = 0;
+  for (const Mask& mask : owned_) marched += mask.count();
+  return needed_.empty() ? 0 : 1 - double(marched) / double(kSamples * needed_.size());
+}
+
 std::vector<std::uint32_t> LightSamples::needed(std::size_t first, std::size_t count) const {
   return listed(needed_, first, count);
 }
@@ -184,9 +191,12 @@ std::vector<std::uint32_t> LightSamples::pairs(std::size_t first, std::size_t co
   std::vector<std::uint32_t> list;
   for (std::size_t tile = first; tile < first + count; ++tile) {
     if (needed_[tile].all()) continue;
-    const std::array<int, kSamples> from = nearest(needed_[tile]);
+    std::array<int, kSamples> from = nearest(needed_[tile]);
     for (std::size_t s = 0; s < kSamples; ++s) {
       if (needed_[tile][s]) continue;
+#if defined(NEPHO_MUTANT_ANY_LIGHT)
+      from[s] = from[0];
+#endif
       list.push_back(std::uint32_t(kSamples * tile + s));
       list.push_back(std::uint32_t(kSamples * tile) + std::uint32_t(from[s]));
     }

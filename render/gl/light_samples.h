@@ -15,9 +15,11 @@ namespace nepho::gl {
 // marched in one of them, its owner.
 class LightSamples {
  public:
-  explicit LightSamples(const Forest& forest);
+  // With `all` every sample of every tile is marched where it is: for tests.
+  explicit LightSamples(const Forest& forest, bool all = false);
 
   std::size_t tiles() const { return needed_.size(); }
+  double spared_share() const;  // part of all samples that are not marched
   // Entries are 729 tile + sample, x fastest, for `count` tiles from `first`.
   std::vector<std::uint32_t> needed(std::size_t first, std::size_t count) const;
   std::vector<std::uint32_t> owned(std::size_t first, std::size_t count) const;  // of the needed

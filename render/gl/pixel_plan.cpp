@@ -7,24 +7,22 @@
 namespace nepho::gl {
 namespace {
 
-constexpr int kFirstGrid = 8, kBlock = 4;  // pixels that are marched side by side
+constexpr int kFirstGrid = 8;
+constexpr std::size_t kBlock = 4;  // pixels that are marched side by side
 #if defined(NEPHO_MUTANT_PIXEL_TOLERANCE)
 constexpr double kShare = 10;
 #else
-constexpr double kShare = 0.5;  // of the tolerance
+constexpr double kShare = 0.75;  // of the tolerance
 #endif
+constexpr float kStraightShare = 0.5f;
 constexpr double kRareShare = 0.05;  // of what one pixel may be off
 constexpr int kMissRounds = 2;
 constexpr std::uint32_t kCheckEach = 128;
 constexpr double kDarkShare = 0.1;     // of the mean: what is darker counts as that
 constexpr float kLeastPassed = 0.25f;  // the same of transmittance
 constexpr double kEdge = 0.01;         // second difference of the ground's distance, relative
-constexpr double kMostForced = 0.6;
+constexpr double kMostForced = 0.7;
 constexpr int kLeastSide = 32;
-
-float luminance(const PixelTexel& c) {
-  return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
-}
 
 // Drawn by place alone (constants of C. Wellons' hash prospector, lowbias32).
 std::uint32_t hash(std::uint32_t x) {
@@ -50,18 +48,25 @@ Row row_of(const std::vector<PixelTexel>& texels, std::size_t b, std::size_t ste
   }
   return row;
 }
-// The cubic's middle; `bend` grows to how far from it a straight line may be.
+// The cubic's middle; `bend` is how far it is from the parabolas through three of the four, which
+// grows with what a cubic misses, and at least a part of how far a straight line is: the parabolas
+// agree where a kink is just between them.
 PixelTexel middle_of(const Row& row, float (&bend)[4]) {
   PixelTexel middle;
   for (std::size_t i = 0; i < 4; ++i) {
     const float b2 = row.a[i] - 2 * row.b[i] + row.c[i], c2 = row.b[i] - 2 * row.c[i] + row.d[i];
     middle[i] = 0.5f * (row.b[i] + row.c[i]) - (b2 + c2) / 16;
-    bend[i] = std::max(std::abs(b2), std::abs(c2)) / 8;
+    bend[i] =
+        std::max(std::abs(b2 - c2) / 2, kStraightShare * std::max(std::abs(b2), std::abs(c2))) / 8;
   }
   return middle;
 }
 
 }  // namespace
+
+float luminance(const PixelTexel& seen) {
+  return 0.2126f * seen[0] + 0.7152f * seen[1] + 0.0722f * seen[2];
+}
 
 PixelPlan::PixelPlan(PixelSettings settings, const PixelValues& values)
     : settings_(std::move(settings)),
@@ -112,13 +117,36 @@ PixelPlan::Stage PixelPlan::stage_at(int number) {
   return along_y ? Stage{grid, true, grid, grid, 0, half} : Stage{grid, false, grid, half, half, 0};
 }
 
+// Beyond the first grid's last column, columns are marched as those of the grid are, at every
+// stage; rows likewise.
+PixelPlan::Places PixelPlan::places(const Stage& stage) const {
+  const auto along = [](int first, int step, int last, int count, bool with_margin) {
+    std::vector<int> list;
+    for (int i = first; i <= last; i += step) list.push_back(i);
+    for (int i = last + 1; with_margin && i < count; ++i) list.push_back(i);
+    return list;
+  };
+  return {along(stage.first_x, stage.step_x, last_x_, settings_.width, stage.along_y),
+          along(stage.first_y, stage.step_y, last_y_, settings_.height, !stage.along_y)};
+}
+
+// In blocks of neighbours.
+template <typename Do>
+void PixelPlan::for_each(const Places& places, const Do& act) {
+  const auto count_x = places.x.size(), count_y = places.y.size();
+  for (std::size_t by = 0; by < count_y; by += kBlock)
+    for (std::size_t bx = 0; bx < count_x; bx += kBlock)
+      for (std::size_t y = by; y < std::min(by + kBlock, count_y); ++y)
+        for (std::size_t x = bx; x < std::min(bx + kBlock, count_x); ++x)
+          act(places.x[x], places.y[y]);
+}
+
 bool PixelPlan::forced(int x, int y, const Stage& stage) const {
+  if (part_seen(at(x, y)) <= 0) return false;
   const int tiles = (settings_.width + kStrideTile - 1) / kStrideTile;
+  const auto tile = std::size_t(y / kStrideTile * tiles + x / kStrideTile);
   const PixelStrides& strides = settings_.strides;
-  return edges_[at(x, y)] != 0 ||
-         (stage.along_y
-              ? strides.y
-              : strides.x)[std::size_t(y / kStrideTile * tiles + x / kStrideTile)] < stage.grid;
+  return edges_[at(x, y)] != 0 || (stage.along_y ? strides.y : strides.x)[tile] < stage.grid;
 }
 
 bool PixelPlan::saves_little() const {
@@ -126,8 +154,7 @@ bool PixelPlan::saves_little() const {
   std::size_t count = 0;
   for (int number = 0; number < kStages; ++number) {
     const Stage stage = stage_at(number);
-    for (int y = stage.first_y; y <= last_y_; y += stage.step_y)
-      for (int x = stage.first_x; x <= last_x_; x += stage.step_x) count += forced(x, y, stage);
+    for_each(places(stage), [&](int x, int y) { count += forced(x, y, stage); });
   }
   return double(count) > kMostForced * double(states_.size());
 }
@@ -139,14 +166,15 @@ void PixelPlan::add(std::vector<std::uint32_t>& list, int x, int y) {
 
 std::vector<std::uint32_t> PixelPlan::first_grid() {
   std::vector<std::uint32_t> list;
-  const int block = kBlock * kFirstGrid / 2;
-  for (int by = 0; by < settings_.height; by += block)
-    for (int bx = 0; bx < settings_.width; bx += block)
-      for (int y = by; y < std::min(by + block, settings_.height); ++y)
-        for (int x = bx; x < std::min(bx + block, settings_.width); ++x)
-          if ((x % kFirstGrid == 0 && y % kFirstGrid == 0) || x > last_x_ || y > last_y_)
-            add(list, x, y);
+  const Places all{places({kFirstGrid, true, kFirstGrid, kFirstGrid, 0, 0}).x,
+                   places({kFirstGrid, false, kFirstGrid, kFirstGrid, 0, 0}).y};
+  for_each(all, [&](int x, int y) { add(list, x, y); });
   return list;
+}
+
+double PixelPlan::brightness(std::size_t p, const PixelTexel& seen) const {
+  const double in_front = settings_.in_front.empty() ? 0.0 : double(settings_.in_front[p]);
+  return in_front + part_seen(p) * double(luminance(seen));
 }
 
 // Of a place half way; returns how far the neighbours bend, relative.
@@ -168,31 +196,27 @@ double PixelPlan::interpolate(PixelValues& values, int x, int y, const Stage& st
   values.met[to] = met;
   const float light = std::max({light_bend[0], light_bend[1], light_bend[2]});
   const float passed = std::max({passed_bend[0], passed_bend[1], passed_bend[2]});
-  return std::max(
-      double(light) / std::max({double(luminance(seen)), kDarkShare * mean_luminance_, 1e-30}),
-      double(passed / std::max({met[0], met[1], met[2], kLeastPassed})));
+  return std::max(part_seen(to) * double(light) /
+                      std::max({brightness(to, seen), kDarkShare * mean_luminance_, 1e-30}),
+                  double(passed / std::max({met[0], met[1], met[2], kLeastPassed})));
 }
 
 std::vector<std::uint32_t> PixelPlan::between(PixelValues& values) {
   std::vector<std::uint32_t> list;
   const Stage stage = stage_at(stage_);
-  const int block_x = kBlock * stage.step_x, block_y = kBlock * stage.step_y;
   const double most = kShare * settings_.tolerance;
   is_check_.clear();
-  for (int by = stage.first_y; by <= last_y_; by += block_y)
-    for (int bx = stage.first_x; bx <= last_x_; bx += block_x)
-      for (int y = by; y <= std::min(by + block_y - 1, last_y_); y += stage.step_y)
-        for (int x = bx; x <= std::min(bx + block_x - 1, last_x_); x += stage.step_x) {
-          const double bend = interpolate(values, x, y, stage);
-          const bool check = hash(std::uint32_t(at(x, y))) % kCheckEach == 0;
-          const bool marched = forced(x, y, stage) || !(bend <= most);
-          if (marched || check) {
-            add(list, x, y);
-            is_check_.push_back(!marched);
-          } else {
-            states_[at(x, y)] = State::kInterpolated;
-          }
-        }
+  for_each(places(stage), [&](int x, int y) {
+    const double bend = interpolate(values, x, y, stage);
+    const bool check = hash(std::uint32_t(at(x, y))) % kCheckEach == 0;
+    const bool marched = forced(x, y, stage) || !(bend <= most);
+    if (marched || check) {
+      add(list, x, y);
+      is_check_.push_back(!marched);
+    } else {
+      states_[at(x, y)] = State::kInterpolated;
+    }
+  });
   return list;
 }
 
@@ -201,14 +225,17 @@ std::vector<std::uint32_t> PixelPlan::around_misses() {
   std::vector<std::uint32_t> list;
   const Stage stage = stage_at(stage_);
   const auto width = std::uint32_t(settings_.width);
-  for (const std::uint32_t p : missed_)
+  for (const std::uint32_t p : missed_) {
+    const int px = int(p % width), py = int(p / width);
+    const int step_x = px > last_x_ ? 1 : stage.step_x, step_y = py > last_y_ ? 1 : stage.step_y;
     for (int j = -1; j <= 1; ++j)
       for (int i = -1; i <= 1; ++i) {
-        const int x = int(p % width) + i * stage.step_x, y = int(p / width) + j * stage.step_y;
-        if (x >= 0 && y >= 0 && x <= last_x_ && y <= last_y_ &&
+        const int x = px + i * step_x, y = py + j * step_y;
+        if (x >= 0 && y >= 0 && x < settings_.width && y < settings_.height &&
             states_[at(x, y)] == State::kInterpolated)
           add(list, x, y);
       }
+  }
   is_check_.assign(list.size(), 0);
   return list;
 }
@@ -222,8 +249,8 @@ double PixelPlan::miss(const PixelValues& values, std::uint32_t p, const PixelTe
     passed = std::max(passed, double(met[i]));
     light = std::max(light, std::abs(double(values.seen[p][i] - seen[i])));
   }
-  const double scale = std::max({double(luminance(seen)), kDarkShare * mean_luminance_, 1e-30});
-  return std::max(light / scale, lost / passed);
+  const double scale = std::max({brightness(p, seen), kDarkShare * mean_luminance_, 1e-30});
+  return std::max(part_seen(p) * light / scale, lost / passed);
 }
 
 void PixelPlan::take(const PixelValues& marched, PixelValues& values) {
@@ -234,7 +261,7 @@ void PixelPlan::take(const PixelValues& marched, PixelValues& values) {
     if (stage_ >= 0) {
       if (is_check_[n]) {
         // Of what is seen in all, the ground as bright as the mean.
-        const double change = double(luminance(values.seen[p]) - luminance(seen)) +
+        const double change = part_seen(p) * double(luminance(values.seen[p]) - luminance(seen)) +
                               mean_luminance_ * double(luminance(values.met[p]) - luminance(met));
         check_squares_[std::size_t(stage_)] += change * change;
         ++checks_[std::size_t(stage_)];
@@ -252,7 +279,7 @@ std::vector<std::uint32_t> PixelPlan::next(const PixelValues& marched, PixelValu
   take(marched, values);
   if (stage_ < 0)
     for (const std::uint32_t p : asked_)
-      mean_luminance_ += double(luminance(values.seen[p])) / double(asked_.size());
+      mean_luminance_ += brightness(p, values.seen[p]) / double(asked_.size());
   if (stage_ >= 0 && rounds_ < kMissRounds) {
     ++rounds_;
     asked_ = around_misses();
@@ -277,9 +304,8 @@ double PixelPlan::predicted_rms() const {
     if (checks_[i] == 0) continue;
     const Stage stage = stage_at(number);
     std::size_t interpolated = 0;
-    for (int y = stage.first_y; y <= last_y_; y += stage.step_y)
-      for (int x = stage.first_x; x <= last_x_; x += stage.step_x)
-        interpolated += states_[at(x, y)] == State::kInterpolated;
+    for_each(places(stage),
+             [&](int x, int y) { interpolated += states_[at(x, y)] == State::kInterpolated; });
     squares +=
         double(interpolated) / double(states_.size()) * check_squares_[i] / double(checks_[i]);
   }

@@ -24,16 +24,19 @@ struct PixelStrides {
 struct PixelSettings {
   int width = 0, height = 0;
   double tolerance = 1e-2;  // of the picture's marches
-  PixelStrides strides;
+  PixelStrides strides = {};
+  // For what is seen behind something else, by pixel; empty: all of it, in front of everything.
+  std::vector<float> part_seen = {}, in_front = {};  // part of it; luminance in front
 };
+float luminance(const PixelTexel& seen);
 
 // Interpolated pixels. Every eighth pixel in both directions is marched. Between them, along
-// columns and then along rows, half way, and half way again until all are there, pixels are interpolated through
-// the four nearest, but marched where those bend by more than kShare of the tolerance (second
-// differences of radiance over luminance, and of transmittance), at edges of the ground, and where
-// the tree has voxels finer than the grid. One in kCheckEach of the others is marched all the same;
-// where one that is marched is not what it would have been interpolated to, its neighbours are
-// marched too.
+// columns and then along rows, half way, and half way again until all are there, pixels are
+// interpolated through the four nearest, but marched where those bend by more than kShare of the
+// tolerance (second differences of radiance over luminance, and of transmittance), at edges of the
+// ground, and where the tree has voxels finer than the grid. One in kCheckEach of the others is
+// marched all the same; where one that is marched is not what it would have been interpolated to,
+// its neighbours are marched too.
 //
 // No OpenGL here: the caller marches what next() names and puts the results in.
 class PixelPlan {
@@ -62,11 +65,18 @@ class PixelPlan {
     int step_x, step_y, first_x, first_y;
   };
   static constexpr int kStages = 6;
+  // Columns and rows of a stage's pixels.
+  struct Places {
+    std::vector<int> x, y;
+  };
   static Stage stage_at(int number);
 
   std::size_t at(int x, int y) const {
     return std::size_t(y) * std::size_t(settings_.width) + std::size_t(x);
   }
+  Places places(const Stage& stage) const;
+  template <typename Do>
+  static void for_each(const Places& places, const Do& act);
   bool forced(int x, int y, const Stage& stage) const;
   void find_edges(const PixelValues& values);
   std::vector<std::uint32_t> first_grid();
@@ -74,12 +84,17 @@ class PixelPlan {
   std::vector<std::uint32_t> around_misses();
   void add(std::vector<std::uint32_t>& list, int x, int y);
   void take(const PixelValues& marched, PixelValues& values);
+  double part_seen(std::size_t p) const {
+    return settings_.part_seen.empty() ? 1.0 : double(settings_.part_seen[p]);
+  }
+  // What a change is measured against, for something this bright.
+  double brightness(std::size_t p, const PixelTexel& seen) const;
   double interpolate(PixelValues& values, int x, int y, const Stage& stage) const;
   double miss(const PixelValues& values, std::uint32_t p, const PixelTexel& seen,
               const PixelTexel& met) const;
 
   PixelSettings settings_;
-  int last_x_, last_y_;              // of the first grid; beyond it all are marched
+  int last_x_, last_y_;              // of the first grid
   std::vector<std::uint8_t> edges_;  // of the ground, within two pixels
   std::vector<State> states_;
   std::vector<std::uint32_t> asked_;

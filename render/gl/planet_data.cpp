@@ -165,6 +165,9 @@ class PlanetBuilder {
                        glm::length(scaled(corner(glm::dvec3(c & 1, c >> 1 & 1, c >> 2)))));
       }
     }
+#if defined(NEPHO_MUTANT_CLOUDS_FORGOTTEN)
+    clouds_.balls.clear();
+#endif
     scene_.clouds =
         !clouds_.balls.empty() || (request_.leave_nothing_out && !forest_.volumes.empty());
     scene_.data.cloud_top_m = float(std::max(0.0, clouds_.top_radius_m - scene_.data.radius_m));

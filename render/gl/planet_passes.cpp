@@ -7,7 +7,6 @@
 
 #include "reference/surface.h"
 
-extern const char* const nepho_shader_ground;
 extern const char* const nepho_shader_sun_map;
 extern const char* const nepho_shader_surface;
 
@@ -153,22 +152,12 @@ std::vector<PixelTexel> PlanetPasses::ground_distances(const std::string& switch
   return read_texels(met_.id(), width, height);
 }
 
-void PlanetPasses::draw_ground(PixelValues& values, const std::string& switches) {
-  const int width = request_.settings.width, height = request_.settings.height;
-  const Texture picture = make_texture_2d(width, height, GL_RGBA32F, GL_NEAREST);
-  glTextureSubImage2D(picture.id(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, values.seen.data());
-  glTextureSubImage2D(met_.id(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, values.met.data());
-  glBindImageTexture(0, picture.id(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
-  glBindImageTexture(1, met_.id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32F);
-  dispatch_blocks(compile("ground", nepho_shader_ground, switches), width, height);
-  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-  values.seen = read_texels(picture.id(), width, height);
-}
-
 void PlanetPasses::add_to(RenderReport& report) const {
   report.planet_bytes = sizeof(PlanetData) + table_bytes_ + surface_bytes_ + map_bytes_;
   report.image_bytes += met_bytes_;
   if (!scene_.air) report.left_out.push_back("air: the planet has none");
+  if (!scene_.clouds && !request_.volumes.empty())
+    report.left_out.push_back("clouds over air and ground: no volume holds any");
   if (!scene_.terrain && scene_.surface_known)
     report.left_out.push_back("terrain: all is sea, at most " + number(scene_.terrain_top_m) +
                               " m high; predicted to change at most " +

@@ -23,8 +23,6 @@ class PlanetPasses {
   void draw_sun_map(const std::string& switches);
   // In the last component of each pixel's, row 0 first.
   std::vector<PixelTexel> ground_distances(const std::string& switches);
-  // Adds what is seen of the ground and of the sky beyond to `values.seen`.
-  void draw_ground(PixelValues& values, const std::string& switches);
   void add_to(RenderReport& report) const;
   // As uploaded; null without air.
   std::shared_ptr<const AirTables> tables() const { return tables_; }

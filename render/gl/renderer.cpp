@@ -10,6 +10,8 @@
 #include "core/error.h"
 #include "gl/atlas.h"
 #include "gl/frame_data.h"
+#include "gl/gpu_clock.h"
+#include "gl/ground_pass.h"
 #include "gl/light_samples.h"
 #include "gl/object.h"
 #include "gl/planet_passes.h"
@@ -18,6 +20,7 @@
 #include "tree/forest.h"
 
 extern const char* const nepho_shader_view;
+extern const char* const nepho_shader_ground;
 extern const char* const nepho_shader_light_sun;
 extern const char* const nepho_shader_light_sky;
 extern const char* const nepho_shader_light_fill;
@@ -28,16 +31,30 @@ namespace {
 
 // A ray is dropped when it can add no more than this share of what lies behind.
 constexpr float kLeastTransmittance = 1.0f / 8192, kLeastTransmittanceExact = 1e-6f;
-constexpr double kLeastBend_cells = 2e-3;  // of curved coordinates, that a parabola may miss
-constexpr GLuint kSampleBinding = 4;       // the phases' in the view pass
+constexpr double kLeastBend_cells = 2e-3;   // of curved coordinates, that a parabola may miss
+constexpr double kFilterError = 3.0 / 512;  // of weights of 8 bits (lattice.md 5)
+// Of the picture, rms: a step that begins in clear air takes a neighbour's light there. Measured:
+// 6e-4 on a thin ball, 2e-4 and less on thick ones, plume, forecast and LES.
+constexpr double kSparedLightError = 1e-3;
+constexpr GLuint kSampleBinding = 4;  // the phases' in the view pass
 constexpr std::size_t kTilesPerDispatch =
     512;  // 729 samples each: within the 65535 groups of OpenGL 4.5
+
+// A part of what the tolerance allows.
+float least_transmittance(const RenderSettings& settings) {
+  const float most = settings.step_voxels ? kLeastTransmittance : 0.01f;
+  return std::clamp(0.1f * float(settings.tolerance), kLeastTransmittanceExact, most);
+}
 
 double process_cpu_s() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
+
+struct Counters {  // march.glsl: CounterBuffer
+  std::uint32_t overruns = 0, rays = 0, extinction_samples = 0, source_samples = 0;
+};
 
 class Renderer {
  public:
@@ -57,20 +74,23 @@ class Renderer {
                                                                       std::size_t) const;
   void light_pass(const gl::Program& program, SampleList list, int entries_each = 1);
   void view();
+  void ground();
   void make_image();
-  void check_overruns() const;
+  void keep_lights();
+  void read_counters();
   void report();
 
   const RenderRequest& request_;
   Forest forest_;
   gl::GpuScene scene_;
   std::optional<gl::LightSamples> light_samples_;
+  double spared_light_ = 0;                 // part of the light's samples that took another's
   std::optional<gl::PlanetPasses> planet_;  // absent: no planet
   std::array<int, 3> atlas_size_{}, light_size_{};
   gl::Texture atlas_, ice_atlas_, light_atlas_;
-  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, overruns_, ice_;
+  gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, counters_, ice_;
   gl::PixelValues values_;
-  gl::ViewReport view_report_;
+  gl::PixelReport view_report_, ground_report_;
   RenderResult result_;
 };
 
@@ -91,10 +111,12 @@ bool Renderer::parabolas() const {
 
 void Renderer::timed(const char* name, const std::function<void()>& work) {
   const double before_s = process_cpu_s();
+  gl::GpuClock clock;
   work();
+  const double gpu_s = clock.stop_s();
   glFinish();
   gl::check_errors(name);
-  result_.report.passes.push_back({name, process_cpu_s() - before_s});
+  result_.report.passes.push_back({name, process_cpu_s() - before_s, gpu_s});
 }
 
 std::string Renderer::defines(bool lit) const {
@@ -124,6 +146,7 @@ std::string Renderer::defines(bool lit) const {
   if (scene_.absorbs) define("ABSORPTION");
   if (scene_.has_ice) define("ICE");
   if (lit) define("LIT");
+  if (request_.count_samples) define("COUNT_SAMPLES");
   if (planet_) text += planet_->defines();
   define("SUN_STEP", std::to_string(s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0));
 #ifdef NEPHO_MUTANT_SHADER  // tests: one planted mistake, by name
@@ -144,11 +167,11 @@ void Renderer::upload() {
   bricks_ = gl::Buffer(std::span<const BrickRecord>(scene_.bricks));
   phases_ = gl::Buffer(std::span<const float>(scene_.phases));
   lit_ = gl::Buffer(std::span<const LitRecord>(scene_.lit));
-  const std::uint32_t none = 0;
-  overruns_ = gl::Buffer(&none, sizeof none);
+  const Counters none{};
+  counters_ = gl::Buffer(&none, sizeof none);
   GLuint binding = 0;
   for (const gl::Buffer* buffer :
-       {&frame_, &volumes_, &nodes_, &bricks_, &phases_, &lit_, &overruns_})
+       {&frame_, &volumes_, &nodes_, &bricks_, &phases_, &lit_, &counters_})
     buffer->bind(binding++);
   glBindTextureUnit(0, atlas_.id());
   glBindTextureUnit(1, light_atlas_.id());
@@ -185,7 +208,8 @@ void Renderer::light() {
   const std::string switches = defines(false);
   gl::Program copy;
   timed("sun depth", [&] {
-    light_samples_.emplace(forest_);
+    light_samples_.emplace(forest_, request_.march_all_light);
+    spared_light_ = light_samples_->spared_share();
     copy = gl::compile("light_extend", nepho_shader_light_extend, switches);
     light_pass(gl::compile("light_sun", nepho_shader_light_sun, switches), &LightSamples::owned);
     light_pass(copy, &LightSamples::shared, 2);
@@ -201,9 +225,41 @@ void Renderer::light() {
   light_samples_.reset();
 }
 
+// The light tiles, out of their texture.
+void Renderer::keep_lights() {
+  LightTiles tiles;
+  std::size_t count = 0;
+  for (const VolumeTree& tree : forest_.volumes) {
+    tiles.first.push_back(count);
+    count += tree.lit_nodes;
+  }
+  tiles.channels = sky_light() ? 4 : 1;
+  const auto channels = std::size_t(tiles.channels);
+  const auto [nx, ny, nz] = light_size_;
+  std::vector<float> texels(channels * gl::texels(light_size_));
+  glGetTextureImage(light_atlas_.id(), 0, sky_light() ? GL_RGBA : GL_RED, GL_FLOAT,
+                    GLsizei(sizeof(float) * texels.size()), texels.data());
+  tiles.values.reserve(count * 729 * channels);
+  for (std::size_t tile = 0; tile < count; ++tile) {
+    const auto [x, y, z] = gl::tile_origin(tile, light_size_);
+    for (int s = 0; s < 729; ++s) {
+      const auto row = std::size_t((z + s / 81) * ny + y + s / 9 % 9);
+      const float* texel = &texels[channels * (row * std::size_t(nx) + std::size_t(x + s % 9))];
+      tiles.values.insert(tiles.values.end(), texel, texel + channels);
+    }
+  }
+  result_.lights = std::make_shared<const LightTiles>(std::move(tiles));
+}
+
 void Renderer::view() {
   const gl::Program program = gl::compile("view", nepho_shader_view, defines(true));
   view_report_ = gl::march_view(request_, forest_, program, values_);
+}
+
+void Renderer::ground() {
+  const gl::Program program = gl::compile("ground", nepho_shader_ground, defines(false));
+  ground_report_ =
+      gl::light_ground(request_, forest_, scene_.frame, planet_->scene(), program, values_);
 }
 
 void Renderer::make_image() {
@@ -222,10 +278,13 @@ void Renderer::make_image() {
 
 // llvmpipe ends all loops of an invocation after 65535 iterations: a picture that lost some is
 // refused, not shown.
-void Renderer::check_overruns() const {
-  std::uint32_t count = 0;
+void Renderer::read_counters() {
+  Counters counters;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetNamedBufferSubData(overruns_.id(), 0, sizeof count, &count);
+  glGetNamedBufferSubData(counters_.id(), 0, sizeof counters, &counters);
+  result_.report.samples = {double(counters.rays), double(counters.extinction_samples),
+                            double(counters.source_samples)};
+  const std::uint32_t count = counters.overruns;
   if (count == 0) return;
   throw Error({.what = "rays needed more steps than this OpenGL device runs",
                .where = "render",
@@ -253,6 +312,21 @@ void Renderer::report() {
     report.left_out.push_back(
         "curves of third order within leaves: predicted to move samples by less than " +
         std::to_string(parabola_error_cells(scene_.widest_leaf_rad)) + " voxels");
+  const auto left_out = [&](const char* format, auto... numbers) {
+    char sentence[200];
+    std::snprintf(sentence, sizeof sentence, format, numbers...);
+    report.left_out.push_back(sentence);
+  };
+  if (!texels8() && !scene_.bricks.empty())
+    left_out(
+        "exact look-ups: filtered, predicted to move extinction by less than %.2g %% of its cell's "
+        "range",
+        100 * kFilterError);
+  if (spared_light_ > 0)
+    left_out(
+        "light of %.1f %% of the samples: that of another there or nearby, predicted to change the "
+        "picture by less than %.2g %% rms",
+        100 * spared_light_, 100 * kSparedLightError);
   if (!scene_.has_shell)
     report.left_out.push_back("curved walls: no volume is on a planet's shell");
   if (!scene_.has_box) report.left_out.push_back("flat walls: no volume is in a box");
@@ -272,16 +346,15 @@ void Renderer::report() {
       scene_.bricks.size() * sizeof(LeafBrick) + scene_.ice.size() * sizeof(IceCodes);
   report.image_bytes =
       32 * std::uint64_t(request_.settings.width) * std::uint64_t(request_.settings.height);
-  if (view_report_.interpolates) {
-    char line_text[160];
-    std::snprintf(
-        line_text, sizeof line_text,
-        "marches of %.1f %% of the pixels: interpolated, predicted to change the picture by "
-        "less than %.2g %% rms (%zu checked)",
-        100 * (1 - view_report_.marched_share), 100 * view_report_.predicted_rms,
-        view_report_.checks);
-    report.left_out.push_back(line_text);
-  }
+  const auto interpolated = [&](const char* what, const gl::PixelReport& pixels) {
+    if (pixels.interpolates)
+      left_out(
+          "%s of %.1f %% of the pixels: interpolated, predicted to change the picture by "
+          "less than %.2g %% rms (%zu checked)",
+          what, 100 * (1 - pixels.marched_share), 100 * pixels.predicted_rms, pixels.checks);
+  };
+  interpolated("marches", view_report_);
+  interpolated("the ground's light", ground_report_);
   if (planet_)
     planet_->add_to(report);
   else
@@ -309,7 +382,8 @@ RenderResult Renderer::run() {
     forest_ = build_forest(request_.volumes, gl::refinement_of(request_));
     scene_ = gl::make_gpu_scene(request_, forest_);
     if (request_.planet) planet_.emplace(request_, forest_);
-    scene_.frame.least_transmittance = exact() ? kLeastTransmittanceExact : kLeastTransmittance;
+    scene_.frame.least_transmittance =
+        exact() ? kLeastTransmittanceExact : least_transmittance(request_.settings);
   });
   timed("upload", [&] { upload(); });
   light();
@@ -317,9 +391,10 @@ RenderResult Renderer::run() {
     timed("sun map", [&] { planet_->draw_sun_map(defines(false)); });
   if (planet_) timed("surface", [&] { values_.met = planet_->ground_distances(defines(false)); });
   timed("view", [&] { view(); });
-  if (planet_) timed("ground", [&] { planet_->draw_ground(values_, defines(false)); });
+  if (planet_) timed("ground", [&] { ground(); });
   make_image();
-  check_overruns();
+  read_counters();
+  if (request_.keep_lights) keep_lights();
   if (request_.settings.probe_pixels > 0)
     timed("error probe", [&] {
       result_.error =
@@ -332,7 +407,12 @@ RenderResult Renderer::run() {
 }  // namespace
 
 RenderResult render(const RenderRequest& request) {
-  return Renderer(request).run();
+  if (!request.leave_nothing_out || !request.planet || request.planet->air)
+    return Renderer(request).run();
+  RenderRequest with_air = request;  // of no density
+  Air& air = with_air.planet->air.emplace();
+  air.rayleigh_per_m = air.aerosol_extinction_per_m = air.ozone_per_m = glm::dvec3(0.0);
+  return Renderer(with_air).run();
 }
 
 }  // namespace nepho

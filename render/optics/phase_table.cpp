@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "optics/hg_draine.h"
 #include "optics/mie_table.h"
 #include "physics/physics_cpp.h"
 
@@ -59,15 +60,30 @@ void check_asymmetry(double g) {
         {"Henyey-Greenstein asymmetry out of range", "phase", "-1 < g < 1", with_unit(g, ""), ""});
 }
 
-std::vector<float> hg_table(double g) {
-  check_asymmetry(g);
+// Of a formula that takes 1 - cos and knows no colours.
+template <class Formula>
+std::vector<float> grey_table(Formula&& formula) {
   std::vector<float> table;
   table.reserve(3 * std::size_t(kPhaseTexels));
   for (int texel = 0; texel < kPhaseTexels; ++texel) {
     const double sine = std::sin(phase_texel_angle_rad(texel) / 2);
-    table.insert(table.end(), 3, float(std::log(f64::hg_phase(2 * sine * sine, g))));
+    table.insert(table.end(), 3, float(std::log(formula(2 * sine * sine))));
   }
   return table;
+}
+
+std::vector<float> raw_table(const Phase& phase) {
+  switch (phase.kind) {
+    case PhaseKind::kMie:
+      return mie_table(phase.effective_radius_m);
+    case PhaseKind::kHenyeyGreenstein:
+      check_asymmetry(phase.asymmetry);
+      return grey_table([&](double down) { return f64::hg_phase(down, phase.asymmetry); });
+    case PhaseKind::kHgDraine:
+      break;
+  }
+  const HgDraine fit = hg_draine_fit(phase.effective_radius_m);
+  return grey_table([&](double down) { return fit.value(down); });
 }
 
 }  // namespace
@@ -104,8 +120,7 @@ PhaseMoments phase_table_moments(const std::vector<float>& table, int wavelength
 }
 
 std::vector<float> phase_table(const Phase& phase) {
-  std::vector<float> table = phase.kind == PhaseKind::kMie ? mie_table(phase.effective_radius_m)
-                                                           : hg_table(phase.asymmetry);
+  std::vector<float> table = raw_table(phase);
   for (int w = 0; w < 3; ++w) {
     const float excess = float(std::log(phase_table_moments(table, w).integral));
     for (std::size_t texel = 0; texel < std::size_t(kPhaseTexels); ++texel)
@@ -116,9 +131,11 @@ std::vector<float> phase_table(const Phase& phase) {
 
 PhaseBulk phase_bulk(const Phase& phase) {
   PhaseBulk bulk;
-  if (phase.kind == PhaseKind::kHenyeyGreenstein) {
-    check_asymmetry(phase.asymmetry);
-    bulk.asymmetry.fill(phase.asymmetry);
+  if (phase.kind != PhaseKind::kMie) {
+    const bool fit = phase.kind == PhaseKind::kHgDraine;
+    if (!fit) check_asymmetry(phase.asymmetry);
+    bulk.asymmetry.fill(fit ? hg_draine_fit(phase.effective_radius_m).asymmetry()
+                            : phase.asymmetry);
     bulk.extinction_efficiency.fill(2);
     return bulk;
   }

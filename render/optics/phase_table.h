@@ -19,10 +19,10 @@ double phase_texel_angle_rad(int texel);
 // wavelength fastest; between texels the logarithm is linear. Mie: water droplets, effective
 // variance 0.1, interpolated between the radii of mie_table.inc in the logarithms of both, then
 // normalised (integral 1 to 1e-6, asymmetry within 5e-4 of phase_bulk). Throws Error where the
-// radius is outside 4 .. 30 um or |asymmetry| >= 1.
+// radius is outside 4 .. 30 um (HG + Draine: 2.5 .. 25 um) or |asymmetry| >= 1.
 std::vector<float> phase_table(const Phase& phase);
 
-// What comes with it, per wavelength. Henyey-Greenstein: extinction efficiency 2, no absorption.
+// What comes with it, per wavelength. Other than Mie: extinction efficiency 2, no absorption.
 struct PhaseBulk {
   std::array<double, 3> asymmetry{}, extinction_efficiency{}, co_albedo{};
 };

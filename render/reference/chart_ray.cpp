@@ -55,7 +55,8 @@ Index3 BoxRay::wrapped(const Cell& cell) const {
 #if defined(NEPHO_MUTANT_NO_WRAP)
     result[a] = std::uint32_t(std::clamp<std::int64_t>(cell[a], 0, n - 1));
 #else
-    result[a] = std::uint32_t((cell[a] % n + n) % n);
+    const bool inside = cell[a] >= 0 && cell[a] < n;
+    result[a] = std::uint32_t(inside ? cell[a] : (cell[a] % n + n) % n);
 #endif
   }
   return result;

@@ -43,7 +43,8 @@ NodeKey node_of(const Lattice& lattice, int root, const Index3& finest_cell, int
 LevelLeaf CutLevels::leaf(std::size_t volume, int root, const Index3& finest_cell) const {
   const VolumeTree& tree = forest_.volumes[volume];
   const TreeNode& node = leaf_at(tree, root, finest_cell);
-  LevelLeaf leaf{.key = node.key, .kind = node.kind, .constant_per_m = 0, .brick = nullptr};
+  LevelLeaf leaf{
+      .key = node.key, .kind = node.kind, .constant_per_m = 0, .brick = nullptr, .lit = node.lit};
   if (node.kind == NodeKind::kConstant) leaf.constant_per_m = double(node.constant_per_m);
   if (node.kind == NodeKind::kBrick)  // the forest owns it: no count to keep
     leaf.brick = {std::shared_ptr<const LeafBrick>(), &tree.bricks[node.brick]};

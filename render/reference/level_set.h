@@ -17,6 +17,7 @@ struct LevelLeaf {
   NodeKind kind = NodeKind::kEmpty;  // never kInner
   double constant_per_m = 0;
   std::shared_ptr<const LeafBrick> brick;  // kBrick
+  std::uint32_t lit = 0;                   // of a cut: its light tile (TreeNode)
 };
 
 // A choice of one level at each place of each volume: what the reference march sees. Thread-safe.

@@ -13,6 +13,7 @@
 
 #include "physics/physics_cpp.h"
 #include "reference/error_metric.h"
+#include "reference/light_model_probe.h"
 #include "reference/light_model_table.h"
 #include "reference/planet_model.h"
 #include "reference/ray_march.h"
@@ -29,6 +30,7 @@ constexpr double kSettled = 0.15;         // relative standard error
 constexpr std::size_t kLeastFiner = 32;   // probes, before level of detail can be
 constexpr double kNegligible = 0.1;       // of the integration term
 constexpr std::uint64_t kManyBricks = 2000;
+constexpr std::size_t kLightProbes = 32;
 
 // Every second bit, from bit 0.
 std::uint32_t even_bits(std::uint64_t code) {
@@ -151,6 +153,14 @@ bool negligible(const std::vector<Probe>& probes) {
   return count >= kLeastFiner && finer < kNegligible * kNegligible * integration;
 }
 
+// kLightProbes of them, evenly in their order.
+std::vector<LightModelPixel> some_of(const std::vector<LightModelPixel>& pixels) {
+  const std::size_t count = std::min(kLightProbes, pixels.size());
+  std::vector<LightModelPixel> some;
+  for (std::size_t p = 0; p < count; ++p) some.push_back(pixels[p * pixels.size() / count]);
+  return some;
+}
+
 }  // namespace
 
 ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
@@ -180,8 +190,8 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
 
   // In batches, each over all of the picture.
   const std::size_t batches = std::max<std::size_t>(pixels.size() / kBatch, 1);
-  // The smallest of the terms: over a planet, where rays are long, an eighth of the probes.
-  const auto tells_noise = [&](std::size_t p) { return !planet || p % batches == 0; };
+  // The smallest of the terms: over a planet, where rays are long, every second batch.
+  const auto tells_noise = [&](std::size_t p) { return !planet || p % batches % 2 == 0; };
   std::vector<Probe> probes(pixels.size());
   const auto each_of_batch = [&](std::size_t batch, const auto& work) {
     tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
@@ -217,6 +227,7 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   }
 
   std::vector<PixelPair> integration, level_of_detail, quantisation, light_model;
+  std::vector<LightModelPixel> light_pixels;
   for (std::size_t p = 0; p < probes.size(); ++p) {
     const Probe& probe = probes[p];
     if (!probe.marched) continue;
@@ -226,13 +237,19 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
       level_of_detail.push_back({probe.cut, probe.finest, probe.weight});
     if (tells_noise(p)) quantisation.push_back({probe.noisy, probe.cut, probe.weight});
     light_model.push_back({probe.cut + probe.light_model, probe.cut, probe.weight});
+    light_pixels.push_back({ray_of(p), pixels[p].pixel, probe.cut, probe.weight});
   }
   estimate.integration = relative_rms(integration);
   estimate.level_of_detail = relative_rms(level_of_detail);
   estimate.quantisation = relative_rms(quantisation);
   estimate.light_model = relative_rms(light_model);
-  estimate.light_model_basis =
-      planet ? "table, slabs; all terms over the whole picture" : "table, slabs";
+  estimate.light_model_basis = "table, slabs";
+  const LightModelError measured = measure_light_model(cut, request, some_of(light_pixels));
+  if (measured.error >= 0) {
+    estimate.light_model = measured.error;
+    estimate.light_model_basis = std::to_string(measured.paths) + " paths a pixel";
+  }
+  if (planet) estimate.light_model_basis += "; all terms over the whole picture";
   if (reaches_deeper(cut, finer))
     estimate.light_model_basis += "; level of detail against " + std::to_string(finer) +
                                   (finer > 1 ? " finer levels" : " finer level");

@@ -16,9 +16,10 @@ namespace nepho {
 //   level of detail   finer bricks         against these bricks: up to three levels deeper, over a
 //                     planet one, and there on fewer probes where that reads thousands of bricks
 //   quantisation      these bricks + noise against these bricks (uniform, +-1/2 step; over a planet
-//                     on an eighth of the probes)
-//   light model       a table by optical depth and scattering angle, measured on slabs: of the
-//                     clouds' light alone
+//                     on half of the probes)
+//   light model       these bricks by the light model's equations against paths through them
+//                     (light_model_probe.h); with settings.probe_paths = 0 a table by optical
+//                     depth and scattering angle, measured on slabs: of the clouds' light alone
 // From 64 probes on, no more are marched once the standard error of the integration term is under
 // 15 % of it; over a planet level of detail is left at 32 where it is under a tenth of that term.
 // `tables`: of the planet's air, as the picture was made with; null: made again. Same numbers for

@@ -69,7 +69,7 @@ Ray camera_ray(const Camera& camera, int width, int height, int x, int y) {
 
 RayMarch::RayMarch(const LevelSet& levels, const RenderRequest& request, MarchSettings settings,
                    std::shared_ptr<const PlanetModel> planet)
-    : levels_(levels), request_(request), settings_(settings), planet_(std::move(planet)) {
+    : levels_(levels), request_(request), settings_(std::move(settings)), planet_(std::move(planet)) {
   if (request.planet && !planet_) planet_ = std::make_shared<const PlanetModel>(request, nullptr);
   const Sky& sky = request.sky;
   sky_lights_ = planet_ ? planet_->has_air()
@@ -130,22 +130,27 @@ double RayMarch::sun_passed(const glm::dvec3& point_m) const {
   return std::exp(-optical_depth({point_m, planet_->to_sun()}, kNoDistance_m, kDark));
 }
 
-RayMarch::Light RayMarch::light_at(const glm::dvec3& point_m) const {
+RayMarch::Light RayMarch::unshadowed(const glm::dvec3& point_m) const {
   Light light;
-  const glm::dvec3 to_sun = glm::normalize(request_.sun.to_sun);
   if (planet_) {
     const PlanetModel::Place place = planet_->place(point_m);
     light.sun_W_per_m2_nm = planet_->sun_W_per_m2_nm(place);
     light.sky = planet_->sky_light(place);
-    if (luminance(light.sun_W_per_m2_nm) > 0) light.tau_sun = optical_depth({point_m, to_sun});
   } else {
     light.sun_W_per_m2_nm = request_.sun.irradiance_W_per_m2_nm;
     light.sky.up = request_.sky.zenith_W_per_m2_sr_nm;
     light.sky.side = request_.sky.horizon_W_per_m2_sr_nm;
     light.sky.down = request_.sky.below_W_per_m2_sr_nm;
-    light.tau_sun = optical_depth({point_m, to_sun});
-    light.sun_part = ground_.sun_part(point_m, to_sun);
+    light.sun_part = ground_.sun_part(point_m, glm::normalize(request_.sun.to_sun));
   }
+  return light;
+}
+
+RayMarch::Light RayMarch::light_at(const glm::dvec3& point_m) const {
+  Light light = unshadowed(point_m);
+  if (settings_.lights) return light;
+  if (luminance(light.sun_W_per_m2_nm) > 0)
+    light.tau_sun = optical_depth({point_m, glm::normalize(request_.sun.to_sun)});
   if (!sky_lights_) return light;
   const auto& [up, east, north] =
       planet_ ? planet_sky_axes(point_m, planet_->z_scale()) : sky_axes_;

@@ -8,6 +8,7 @@
 #include "reference/chart_ray.h"
 #include "reference/level_set.h"
 #include "renderer.h"
+#include "tree/light_tiles.h"
 
 namespace nepho {
 
@@ -32,6 +33,12 @@ class PlanetModel;
 struct MarchSettings {
   double source_tolerance = 1e-4;
   double least_transmittance = 1e-6;  // the ray ends there
+  // Light of a picture's own tiles rather than marched from each place: what is left of the
+  // difference is how the view ray is integrated. The levels are then the cut that these are of.
+  std::shared_ptr<const LightTiles> lights = nullptr;
+  // Every piece (a cell) is halved as often, whatever the estimate says of its ends: a source that
+  // is the same at both and another between them is not seen by it.
+  int least_halvings = 0;
 };
 
 struct MarchResult {
@@ -82,6 +89,7 @@ class RayMarch {
   };
   class Trace;
 
+  Light unshadowed(const glm::dvec3& point_m) const;
   Light light_at(const glm::dvec3& point_m) const;
   double visibility(const glm::dvec3& point_m, const glm::dvec3& direction) const;
   double sun_passed(const glm::dvec3& point_m) const;  // what clouds let through of its beam

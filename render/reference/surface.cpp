@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kSteepest = 10;  // walls of data are no steeper than this
 constexpr int kHalvings = 48;
+constexpr double kOffStart = 1e-5;  // of a cell: where a ray from the ground is above or below it
 
 // Height of a node; under the ellipsoid counts as 0.
 double node_height_m(const SurfaceMap& map, int i, int j) {
@@ -107,7 +108,7 @@ double PlanetSurface::terrain_m(const Ray& ray, double begin_m, double end_m) co
   return t;
 }
 
-double PlanetSurface::distance_m(const Ray& ray) const {
+double PlanetSurface::distance_m(const Ray& ray, bool from_it) const {
   const double sea_m = sea_.distance_m(ray);
   if (!map_) return sea_m;
   const glm::dvec3 scale{1, 1, z_scale_};
@@ -119,7 +120,21 @@ double PlanetSurface::distance_m(const Ray& ray) const {
   const double begin_m = (-b - std::sqrt(discriminant)) / a;
   const double end_m = (-b + std::sqrt(discriminant)) / a;
   if (c > 0 && !(begin_m > 0)) return sea_m;
-  return std::min(sea_m, terrain_m(ray, std::max(begin_m, 0.0), std::min(end_m, sea_m)));
+  double first_m = std::max(begin_m, 0.0);
+#if defined(NEPHO_MUTANT_START_OFF_THE_GROUND)
+  if (from_it) {
+    const glm::dvec3 start_m = ray.origin_m + 0.02 * cell_m_ * spot(ray.origin_m).normal;
+    return distance_m({start_m, ray.direction});
+  }
+#elif !defined(NEPHO_MUTANT_ROOT_OF_THE_START)
+  if (from_it) {
+    // The root of the start is known. In its cell heights are quadratic along the ray: what leaves
+    // and comes back is below until the cell's end, and so is found by the steps.
+    first_m = kOffStart * cell_m_;
+    if (gap_m(ray.origin_m + first_m * ray.direction) <= 0) return 0;
+  }
+#endif
+  return std::min(sea_m, terrain_m(ray, first_m, std::min(end_m, sea_m)));
 }
 
 PlanetSurface::Spot PlanetSurface::spot(const glm::dvec3& point_m) const {

@@ -23,8 +23,9 @@ class PlanetSurface {
 
   // `map` outlives this, or is null.
   PlanetSurface(const Ellipsoid& body, const SurfaceMap* map);
-  // Where a ray meets it from above, or kNoDistance_m.
-  double distance_m(const Ray& ray) const;
+  // Where a ray meets it from above, or kNoDistance_m. `from_it`: the ray's origin is on it, which
+  // is no meeting; where the ray goes below at once, it is met at 0.
+  double distance_m(const Ray& ray, bool from_it = false) const;
   Spot spot(const glm::dvec3& point_m) const;
   double cell_m() const { return cell_m_; }  // the map's smallest
   bool terrain() const { return map_ != nullptr; }

@@ -112,7 +112,10 @@ void RayMarch::Trace::add_interval(double t0_m, double t1_m) {
     add_air(a);
     const End first = last_.t_m == a ? last_ : end_at(a);
     last_ = end_at(b);
-    add_step(first, last_, 0);
+    if (march_.settings_.lights && !air_)
+      add_looked_up(first, last_, source(first), source(last_), 0);
+    else
+      add_step(first, last_, 0);
     air_to_m_ = b;
   }
 }
@@ -161,9 +164,10 @@ void RayMarch::Trace::add_step(const End& first, const End& last, int halvings) 
   const glm::dvec3 j0 = length_m * (first.air.sunlit + first.air.other),
                    j1 = length_m * (last.air.sunlit + last.air.other);
   const double l0 = luminance(s0), l1 = luminance(s1);
-  if (halvings < kMaxHalvings && (too_curved(l0, l1, -std::expm1(-x), std::max(l0, l1)) ||
-                                  too_curved(luminance(j0), luminance(j1), 1, std::max(l0, l1)) ||
-                                  std::max({y.r, y.g, y.b}) > kAirStep)) {
+  if (halvings < march_.settings_.least_halvings ||
+      (halvings < kMaxHalvings && (too_curved(l0, l1, -std::expm1(-x), std::max(l0, l1)) ||
+                                   too_curved(luminance(j0), luminance(j1), 1, std::max(l0, l1)) ||
+                                   std::max({y.r, y.g, y.b}) > kAirStep))) {
     const End middle = end_at((first.t_m + last.t_m) / 2);
     add_step(first, middle, halvings + 1);
     add_step(middle, last, halvings + 1);
@@ -187,6 +191,38 @@ void RayMarch::Trace::add_step(const End& first, const End& last, int halvings) 
   result_.optical_depth += x;
 }
 
+// Where light costs a look-up: the step against its halves, in optical depth (a shell's cells are
+// curved) and light, extrapolated from both; the error of linear sources goes with the cube of a
+// step's optical depth.
+void RayMarch::Trace::add_looked_up(const End& first, const End& last, const glm::dvec3& s0,
+                                    const glm::dvec3& s1, int halvings) {
+  const End middle = end_at((first.t_m + last.t_m) / 2);
+  const glm::dvec3 sm = source(middle);
+  const double x1 = step_depth(first.t_m, middle.t_m), x2 = step_depth(middle.t_m, last.t_m);
+  const double x = x1 + x2, split = x > 0 ? x1 * x2 / (x * x) : 0.25;
+  const double rest = split > 0.125 ? (1 - 3 * split) / (3 * split) : 0;
+  const double x_whole = step_depth(first.t_m, last.t_m);
+  glm::dvec3 whole, halves;
+  for (int c = 0; c < 3; ++c) {
+    whole[c] = f64::step_radiance(s0[c], s1[c], x_whole);
+    halves[c] =
+        f64::step_radiance(s0[c], sm[c], x1) + std::exp(-x1) * f64::step_radiance(sm[c], s1[c], x2);
+  }
+  const double error = passed() * luminance(glm::abs(halves - whole));
+  const double scale =
+      luminance(result_.radiance_W_per_m2_sr_nm) + passed() * luminance(halves);
+  if (halvings < kMaxHalvings && error > march_.settings_.source_tolerance * scale) {
+    add_looked_up(first, middle, s0, sm, halvings + 1);
+    add_looked_up(middle, last, sm, s1, halvings + 1);
+    return;
+  }
+  const glm::dvec3 scattered = transmittance_ * (halves + rest * (halves - whole));
+  result_.scattered_W_per_m2_sr_nm += scattered;
+  result_.radiance_W_per_m2_sr_nm += scattered;
+  transmittance_ *= std::exp(-x);
+  result_.optical_depth += x;
+}
+
 // Whether a source that is not linear between s0 and s1 may matter: it counts `weight` times, of
 // what is collected or of `most`.
 bool RayMarch::Trace::too_curved(double s0, double s1, double weight, double most) const {
@@ -198,7 +234,19 @@ bool RayMarch::Trace::too_curved(double s0, double s1, double weight, double mos
   return error > march_.settings_.source_tolerance * scale;
 }
 
-glm::dvec3 RayMarch::Trace::phases(std::size_t volume, const End& end) const {
+// Of one volume: its own tile's, where a picture's light is asked for.
+RayMarch::Light RayMarch::Trace::light_of(std::size_t volume, const End& end) const {
+  Light light = end.light;
+  if (!march_.settings_.lights) return light;
+  const glm::dvec4 seen = walks_[volume].light(*march_.settings_.lights, end.t_m);
+  light.tau_sun = seen[0];
+  light.visible_up = seen[1];
+  light.visible_side = seen[2];
+  light.visible_down = seen[3];
+  return light;
+}
+
+glm::dvec3 RayMarch::Trace::phases(std::size_t volume, const End& end, double tau_sun) const {
   const Octaves &all = scattering_[volume], &ice = ice_scattering_[volume];
 #if defined(NEPHO_MUTANT_REFERENCE_NO_ICE)
   const double part = 0;
@@ -209,25 +257,25 @@ glm::dvec3 RayMarch::Trace::phases(std::size_t volume, const End& end) const {
   for (int n = 0; n < march_.octaves_; ++n) {
     const auto i = std::size_t(n);
     const glm::dvec3 phase = part > 0 ? all[i] + part * (ice[i] - all[i]) : all[i];
-    sum += phase * f64::octave_transmittance(n, end.light.tau_sun);
+    sum += phase * f64::octave_transmittance(n, tau_sun);
   }
   return sum;
 }
 
 glm::dvec3 RayMarch::Trace::source(const End& end) const {
-  const Light& at = end.light;
   const RenderRequest& request = march_.request_;
-  glm::dvec3 ambient{0.0};
-  if (march_.sky_lights_)
-    for (int c = 0; c < 3; ++c)
-      ambient[c] = f64::sky_source(at.visible_up, at.visible_side, at.visible_down, at.sky.up[c],
-                                   at.sky.side[c], at.sky.down[c]);
   glm::dvec3 sum{0.0};
   double weights = 0;
   for (const std::size_t v : volumes_) {
     const double k = std::max(walks_[v].extinction_per_m(end.t_m), kLeastWeight_per_m);
+    const Light at = light_of(v, end);
+    glm::dvec3 ambient{0.0};
+    if (march_.sky_lights_)
+      for (int c = 0; c < 3; ++c)
+        ambient[c] = f64::sky_source(at.visible_up, at.visible_side, at.visible_down, at.sky.up[c],
+                                     at.sky.side[c], at.sky.down[c]);
     sum += k * (1.0 - request.volumes[v].co_albedo) *
-           (at.sun_part * phases(v, end) * at.sun_W_per_m2_nm + ambient);
+           (at.sun_part * phases(v, end, at.tau_sun) * at.sun_W_per_m2_nm + ambient);
     weights += k;
   }
   return sum / weights;

@@ -119,19 +119,47 @@ double VolumeWalk::extinction_per_m(double t_m) const {
   return interpolated(corners_, t_m);
 }
 
-double VolumeWalk::interpolated(const std::array<double, 8>& corners, double t_m) const {
+glm::dvec3 VolumeWalk::fraction(double t_m) const {
   const glm::dvec3 at = ray_->cells_at(leaf_root_, t_m);
   glm::dvec3 f;
   for (int a = 0; a < 3; ++a) {
     const auto i = std::size_t(a);
     f[a] = std::clamp((at[a] - double(block_.low[i])) / double(size_[i]), 0.0, 1.0);
   }
+  return f;
+}
+
+namespace {
+
+template <class Value>
+Value trilinear(const std::array<Value, 8>& corners, const glm::dvec3& f) {
   const auto along_x = [&](std::size_t c) {
     return corners[c] + f.x * (corners[c + 1] - corners[c]);
   };
-  const double near = along_x(0) + f.y * (along_x(2) - along_x(0));
-  const double far = along_x(4) + f.y * (along_x(6) - along_x(4));
+  const Value near = along_x(0) + f.y * (along_x(2) - along_x(0));
+  const Value far = along_x(4) + f.y * (along_x(6) - along_x(4));
   return near + f.z * (far - near);
+}
+
+}  // namespace
+
+double VolumeWalk::interpolated(const std::array<double, 8>& corners, double t_m) const {
+  return trilinear(corners, fraction(t_m));
+}
+
+glm::dvec4 VolumeWalk::light(const LightTiles& tiles, double t_m) const {
+  const float* tile = tiles.tile(volume_, leaf_.lit);
+  Index3 s;
+  for (std::size_t a = 0; a < 3; ++a)
+    s[a] = std::uint32_t((block_.low[a] - node_.low[a]) / size_[a]);
+  std::array<glm::dvec4, 8> corners;
+  corners.fill(glm::dvec4(0, 1, 1, 1));
+  for (std::uint32_t c = 0; c < 8; ++c) {
+    const std::size_t at = brick_offset(s[0] + (c & 1), s[1] + (c >> 1 & 1), s[2] + (c >> 2));
+    for (int i = 0; i < tiles.channels; ++i)
+      corners[c][i] = double(tile[at * std::size_t(tiles.channels) + std::size_t(i)]);
+  }
+  return trilinear(corners, fraction(t_m));
 }
 
 double VolumeWalk::ice_part(double t_m) const {

@@ -6,6 +6,7 @@
 
 #include "reference/chart_ray.h"
 #include "reference/level_set.h"
+#include "tree/light_tiles.h"
 
 namespace nepho {
 
@@ -30,6 +31,9 @@ class VolumeWalk {
   // Part of it that is ice, 0 .. 1: where extinction goes to 0, the whole brick's (as the
   // renderer's).
   double ice_part(double t_m) const;
+  // Light of the picture's tiles: optical depth towards the sun, sky visible above, aside, below
+  // (1 where the tiles do not tell).
+  glm::dvec4 light(const LightTiles& tiles, double t_m) const;
   int sub_steps(double length_m) const;  // Simpson's, for such a length of it
   std::size_t pieces() const { return pieces_; }
   bool endless() const { return endless_; }
@@ -40,6 +44,7 @@ class VolumeWalk {
   bool in_leaf() const;
   void find_leaf();
   void load_corners();
+  glm::dvec3 fraction(double t_m) const;  // of the piece's cell
   double interpolated(const std::array<double, 8>& corners, double t_m) const;
 
   const LevelSet& levels_;

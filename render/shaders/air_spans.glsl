@@ -55,12 +55,17 @@ Knot air_knot(float t_m) {
 }
 
 #ifdef NEPHO_SUN_MAP
-// Six places, so that an edge that comes near shows no steps.
+// Six places, so that an edge that comes near shows no steps. None where no cloud is above the span: its
+// lowest place is not under a chord's by more than the square of its length over 8 radii.
 float lit_mean(float begin_m, float length_m) {
+  float scaled_m = length_m * planet_ray.stretch;
+  float lowest_m = min(planet_height(begin_m), planet_height(begin_m + length_m)) -
+                   scaled_m * scaled_m / (8.0 * float(planet.radius_m));
+  int places = lowest_m > planet.cloud_top_m ? 0 : 6;
   float sum = 0.0;
-  for (int place = 0; place < 6; ++place)
+  for (int place = 0; place < places; ++place)
     sum += sun_visible(begin_m + length_m * (1.0 / 6.0) * (float(place) + 0.5));
-  return sum * (1.0 / 6.0);
+  return places == 0 ? 1.0 : sum * (1.0 / 6.0);
 }
 #endif
 

@@ -1,11 +1,12 @@
 #version 450
 // Light of what is behind all air and cloud: of the ground, by sun through air and clouds with a march
-// of its own, and by the sky; where there is none, of the night sky and the sun's disc.
-layout(local_size_x = 8, local_size_y = 8) in;
+// of its own, and by the sky; where there is none, of the night sky and the sun's disc. Of the pixels
+// that the buffer names, in its order: neighbours side by side.
+layout(local_size_x = 64) in;
 layout(binding = 0) uniform sampler3D atlas;
-layout(binding = 0, rgba32f) uniform image2D picture;
-layout(binding = 1, rgba32f) uniform readonly image2D met;
-uniform ivec2 first_pixel;
+// Two for each pixel. Before: the second holds its place and the distance of the ground. After: the
+// first holds the radiance.
+layout(std430, binding = 5) restrict buffer PixelBuffer { vec4 pixels[]; };
 #include "head.glsl"
 #include "walk.glsl"
 #include "march.glsl"
@@ -75,21 +76,20 @@ Place place_at(float t_m) {
 void main() {
   load_frame();
   load_planet();
-  ivec2 pixel = first_pixel + ivec2(gl_GlobalInvocationID.xy);
-  if (pixel.x >= frame.width || pixel.y >= frame.height) return;
-  vec4 seen = imageLoad(met, pixel);
-  begin_camera_ray(pixel);
-  if (!(seen.a < FAR)) {
-    vec4 before = imageLoad(picture, pixel);
-    imageStore(picture, pixel, vec4(before.rgb + seen.rgb * sky_beyond(), before.a));
+  int entry = 2 * int(gl_GlobalInvocationID.x);
+  if (entry >= pixels.length()) return;
+  vec4 asked = pixels[entry + 1];
+  pixels[entry + 1] = vec4(1.0, 1.0, 1.0, asked.z);
+  begin_camera_ray(ivec2(asked.xy));
+  if (!(asked.z < FAR)) {
+    pixels[entry] = vec4(sky_beyond(), 0.0);
     return;
   }
-  if (max(seen.r, max(seen.g, seen.b)) < frame.least_transmittance) return;
   if (!begin_planet_ray()) return;
 #ifdef NEPHO_TERRAIN
   begin_surface_ray();
 #endif
-  Place place = place_at(seen.a);
+  Place place = place_at(asked.z);
   vec3 to_eye = vec3(-ray_direction), to_sun = vec3(vec_of(frame.to_sun));
   vec3 sky_up = vec3(0.0), sky_low = vec3(0.0);
 #ifdef NEPHO_AIR
@@ -145,6 +145,5 @@ void main() {
 #endif
     radiance[c] = mix(land, water, place.water);
   }
-  vec4 before = imageLoad(picture, pixel);
-  imageStore(picture, pixel, vec4(before.rgb + seen.rgb * radiance, before.a));
+  pixels[entry] = vec4(radiance, 0.0);
 }

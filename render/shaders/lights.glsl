@@ -111,10 +111,28 @@ float sun_part_at(float t_m) {
 }
 #endif
 
+#ifdef NEPHO_TEXELS8
+// Of eight texels by weights of float: filters have weights of 8 bits.
+vec4 light_texel8(vec3 at) {
+  vec3 f = fract(at);
+  ivec3 p = ivec3(at);
+  ivec3 n = ivec3(greaterThan(f, vec3(0.0)));  // never beyond the tile
+  vec4 low = mix(mix(texelFetch(light_atlas, p, 0), texelFetch(light_atlas, p + ivec3(n.x, 0, 0), 0), f.x),
+                 mix(texelFetch(light_atlas, p + ivec3(0, n.y, 0), 0), texelFetch(light_atlas, p + ivec3(n.x, n.y, 0), 0), f.x), f.y);
+  vec4 high = mix(mix(texelFetch(light_atlas, p + ivec3(0, 0, n.z), 0), texelFetch(light_atlas, p + ivec3(n.x, 0, n.z), 0), f.x),
+                  mix(texelFetch(light_atlas, p + ivec3(0, n.y, n.z), 0), texelFetch(light_atlas, p + n, 0), f.x), f.y);
+  return mix(low, high, f.z);
+}
+#endif
+
 // Radiance of one volume at t_m: J / extinction, W m-2 sr-1 nm-1.
 vec3 source_at(int volume, float t_m) {
   vec3 at = walks[volume].light_tile + leaf_cells_at(volume, walks[volume], t_m);
+#ifdef NEPHO_TEXELS8
+  vec4 light = light_texel8(at);
+#else
   vec4 light = textureLod(light_atlas, (at + 0.5) * per_light_texel, 0.0);
+#endif
   float first = exp(-light.r), higher = 0.0;
 #ifdef NEPHO_ICE
   // k S = (k - k_ice) S_liquid + k_ice S_ice.

@@ -7,7 +7,7 @@
 
 Walk walks[NEPHO_VOLUMES];
 
-layout(std430, binding = 6) buffer OverrunBuffer { uint overruns; };
+layout(std430, binding = 6) buffer CounterBuffer { uint overruns, rays, extinction_samples, source_samples; };
 
 // `ended` is set in a loop's body where its condition is about to fail. (The condition itself, asked
 // again after the loop, came out wrong on llvmpipe.)

@@ -38,16 +38,16 @@ float passed(Seen seen) { return most_of(seen.transmittance); }
 #endif
 #include "lights.glsl"
 
-// A step of cloud; air in front of and behind it, half each (Strang's splitting).
-void add_step(inout Seen seen, vec3 s0, vec3 s1, float tau, float t, float step_m) {
-  float e0 = exp_e0(tau), w1 = exp_w1(tau);
+// A step of cloud: its own light and optical depth; air in front of and behind it, half each
+// (Strang's splitting).
+void add_step(inout Seen seen, vec3 light, float tau, float t, float step_m) {
 #ifdef NEPHO_AIR
   vec3 weights = span_weights(t + 0.5 * step_m);
   vec3 half_way = exp(-(0.5 * step_m) * air_extinction(weights));
   seen.transmittance *= half_way;
-  seen.radiance += seen.transmittance * step_m * e0 * air_emission_at(weights);
+  seen.radiance += seen.transmittance * step_m * exp_e0(tau) * air_emission_at(weights);
 #endif
-  seen.radiance += seen.transmittance * tau * (s0 * e0 + (s1 - s0) * w1);
+  seen.radiance += seen.transmittance * light;
 #ifdef NEPHO_MUTANT_EULER
   seen.transmittance *= max(1.0 - tau, 0.0);
 #else
@@ -59,6 +59,11 @@ void add_step(inout Seen seen, vec3 s0, vec3 s1, float tau, float t, float step_
   seen.optical_depth += tau;
 }
 
+// Of a step whose source is linear in optical depth.
+vec3 linear_light(vec3 s0, vec3 s1, float tau) {
+  return tau * (s0 * exp_e0(tau) + (s1 - s0) * exp_w1(tau));
+}
+
 // Where the march through cloud is: extinction and source at its last place, and the step that is
 // tried next. `fresh` where that place was outside of cloud: the first step then has no length.
 struct March {
@@ -67,66 +72,16 @@ struct March {
   float longest;
   bool fresh;
 };
+#ifdef NEPHO_COUNT_SAMPLES
+uint extinction_count = 0u, source_count = 0u;
+#endif
 March march = March(0.0, vec3(0.0), FAR, true);
 
-// One segment in which no volume changes its leaf. A step is halved until its optical depth is under
-// `thickest`: the source is linear in optical depth within a step, and where a voxel is thick it falls
-// off exponentially. What lies behind more of the cloud may be coarser, as less of it is seen. Leaves
-// side by side share their faces: what was found at the end of one holds for the next.
-void march_segment(inout Seen seen, float t, float end, bool smooth_) {
-  float voxel = cell_length(0.5 * (t + end));
-  begin_segment(t, end);
-#ifdef NEPHO_CELL_EXACT
-  const float thickest = 0.05;
-  march.fresh = true;
-#elif defined(NEPHO_ADAPTIVE)
-  float thinnest = clamp(1.6 * sqrt(frame.tolerance), 0.05, 1.0), h = 2.0 * voxel;
-#else
-  const float thickest = 1.0;
-  float h = frame.step_voxels * voxel;
-#endif
-  while (t < end) {
-#ifdef NEPHO_CELL_EXACT
-    int sub_steps = 1;
-    float next = smooth_ ? min(t + voxel, end) : cell_end(t, end, sub_steps);
-    float step_m = (next - t) / float(sub_steps);
-#else
-    float step_m = end - t < 1.25 * h ? end - t : max(h, least_step(t));
-#endif
 #ifdef NEPHO_ADAPTIVE
-    float thickest = min(thinnest * clamp(0.7 * inversesqrt(max(passed(seen), 1e-9)), 1.0, 8.0), 1.0);
+#include "adaptive_steps.glsl"
+#else
+#include "fixed_steps.glsl"
 #endif
-    step_m = march.fresh ? 0.0 : min(step_m, march.longest);
-    // The last step ends on the wall itself: no remainder by rounding.
-    float next_t = end - (t + step_m) < 1e-4 * step_m ? end : t + step_m;
-    float k_mid = total_extinction_at(t + 0.5 * step_m), k1 = total_extinction_at(next_t);
-    float tau = simpson_optical_depth(march.k0, k_mid, k1, step_m);
-    bool refused = tau > thickest;
-#ifdef NEPHO_ADAPTIVE
-    // Simpson against the trapezium: what the step leaves to its shape, as seen from the eye.
-    float doubt = passed(seen) * step_m * abs(march.k0 - 2.0 * k_mid + k1) * (1.0 / 6.0);
-    refused = refused || (doubt > 0.6 * frame.tolerance && step_m > 1.01 * voxel);
-    h = doubt < 0.08 * frame.tolerance ? 3.0 * voxel : 2.0 * voxel;
-#endif
-    if (refused && step_m > 2.0 * least_step(t)) {
-      march.longest = 0.5 * step_m;
-    } else {
-      vec3 s1 = total_source_at(next_t);
-      if (!march.fresh) add_step(seen, march.s0, s1, tau, t, step_m);
-      // No more than what would be refused were extinction to stay; not where it is about to begin.
-      march.longest = 2.0 * step_m;
-      if (march.fresh) march.longest = FAR;
-      march.longest = min(march.longest, k1 > 0.0 ? 1.4 * thickest / k1 : FAR);
-      march.s0 = s1;
-      march.k0 = k1;
-      // A float cannot hold a step below its own spacing: then the ray is done with this segment.
-      if (next_t <= t && !march.fresh) break;
-      march.fresh = false;
-      t = next_t;
-      if (passed(seen) < frame.least_transmittance) break;
-    }
-  }
-}
 
 #ifdef NEPHO_GROUND
 #include "see_planet.glsl"
@@ -134,6 +89,14 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
 Seen see() {
   Seen seen = Seen(vec3(0.0), 1.0, 0.0);
   float end_m, t = begin_walks(end_m);
+  float sine = float(dot(ray_direction, dvec3(frame.sky_axes[0], frame.sky_axes[1], frame.sky_axes[2])));
+  vec3 background;
+  for (int c = 0; c < 3; ++c)
+    background[c] = end_m < FAR ? frame.below[c]
+                                : sky_radiance(sine, frame.zenith[c], frame.horizon[c], frame.below[c]);
+#ifdef NEPHO_ADAPTIVE
+  behind = luminance_of(background);
+#endif
   // Before the loop: llvmpipe runs what is in its branches at every turn.
   begin_lights();
   int ended = t < end_m ? 0 : 1;
@@ -166,10 +129,7 @@ Seen see() {
     }
   }
   count_overrun(ended);
-  float sine = float(dot(ray_direction, dvec3(frame.sky_axes[0], frame.sky_axes[1], frame.sky_axes[2])));
-  for (int c = 0; c < 3; ++c)
-    seen.radiance[c] += seen.transmittance * (end_m < FAR ? frame.below[c]
-                        : sky_radiance(sine, frame.zenith[c], frame.horizon[c], frame.below[c]));
+  seen.radiance += seen.transmittance * background;
   return seen;
 }
 #endif
@@ -192,4 +152,9 @@ void main() {
   Seen seen = see();
 #endif
   pixels[entry] = vec4(seen.radiance, seen.optical_depth);
+#ifdef NEPHO_COUNT_SAMPLES
+  atomicAdd(rays, 1u);
+  atomicAdd(extinction_samples, extinction_count);
+  atomicAdd(source_samples, source_count);
+#endif
 }

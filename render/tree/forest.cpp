@@ -85,6 +85,8 @@ class Refiner {
     }
     forest_.budget_bound = !queue_.empty();
     forest_.cost_bytes = cost(counts_);
+    queue_.clear();
+    summaries_.clear();
     for (VolumeTree& tree : forest_.volumes) read_bricks(tree);
     return std::move(forest_);
   }
@@ -228,6 +230,9 @@ class Refiner {
       return tree.nodes[a].key < tree.nodes[b].key;
     });
 #endif
+    tree.nodes.shrink_to_fit();
+    tree.bricks.reserve(std::size_t(std::ranges::count_if(
+        tree.nodes, [](const TreeNode& node) { return node.kind == NodeKind::kBrick; })));
     for (const std::uint32_t n : order) {
       TreeNode& node = tree.nodes[n];
       if (node.kind != NodeKind::kBrick && node.kind != NodeKind::kConstant) continue;

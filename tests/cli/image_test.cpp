@@ -215,6 +215,17 @@ TEST(Tone, the_night_side_does_not_set_a_planets_exposure) {
   EXPECT_NEAR(std::exp2(exposure_on_planet(image, cloud, 0.8)) * 0.6, kBrightCloud, 0.01);
 }
 
+TEST(Tone, glint_does_not_put_clouds_into_the_dark) {
+  FloatImage image = grey(100, 100, 0.02f);  // sea, with the sun's image on a tenth of it
+  std::vector<float> cloud(10000, 0.0f);
+  std::fill(cloud.begin(), cloud.begin() + 3000, 5.0f);
+  fill(image, 0, 3000, 0.1f);
+  const double without = exposure_on_planet(image, cloud, 0.2);
+  EXPECT_NEAR(std::exp2(without) * 0.1, kBrightCloud, 0.01);
+  fill(image, 9000, 10000, 20.0f);
+  EXPECT_EQ(exposure_on_planet(image, cloud, 0.2), without);
+}
+
 TEST(Tone, a_grey_sky_stays_grey_and_a_clear_one_is_measured_by_white) {
   const std::vector<float> overcast(10000, 30.0f), clear(10000, 0.0f);
   const double ev = exposure_on_planet(grey(100, 100, 0.05f), overcast, 0.4);

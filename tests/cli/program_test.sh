@@ -66,7 +66,7 @@ render_repeats_from_its_metadata() {
 frames_and_exposes_by_itself() {
   sphere in/s.json
   nephoscope render in/s.json -o a.ppm >a.txt
-  has a.txt '^error \(estimated\): integration [0-9.e+-]+ %, level of detail [0-9.e+-]+ %, quantisation [0-9.e+-]+ %, light model [0-9.e+-]+ % \(table, slabs\)$'
+  has a.txt '^error \(estimated\): integration [0-9.e+-]+ %, level of detail [0-9.e+-]+ %, quantisation [0-9.e+-]+ %, light model [0-9.e+-]+ % \([0-9]+ paths a pixel\)$'
   has a.txt 'exposure [+-][0-9.]+ EV \(from the picture\)'
   has a.txt '^assumed: camera: frames the cloud'
   has a.txt "^assumed: sun: 40 degrees high, behind the camera's left shoulder"

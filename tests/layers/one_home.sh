@@ -24,6 +24,7 @@ check 'ingest/sources/netcdf|tests/netcdf' 'find_package\(netCDF' '(netcdf|hdf5)
 check 'ingest/sources/grib|tests/grib' 'find_package\(eccodes' 'eccodes\.h'
 check 'tools/image/oiio' 'find_(package|path)\(.*OpenImageIO' 'OpenImageIO/'
 check 'ingest/geo|tests' 'find_package\(GeographicLib' 'GeographicLib/'
+check 'ingest/geo' 'find_package\(PROJ' 'proj\.h'
 check 'tools/sun' 'find_path\(LIBNOVA' 'libnova/'
 check 'tools' 'find_package\(CLI11' 'CLI/'
 check 'tests/support' 'find_package\(Boost' 'boost/'

@@ -199,9 +199,9 @@ std::string write_flat(const std::string& name, const std::vector<std::string>& 
 TEST(Malformed, NoHorizontalGrid) {
   refused(write_flat("profile", {"time", "height"}), {"[clw]", "no horizontal grid", "height 4"});
   refused(write_flat("triangles", {"time", "height", "ncells"}),
-          {"[clw]", "triangular grids are not read yet", "ncells 5"});
+          {"[clw]", "the cells of the grid have no place", "5 cells", "--grid"});
   refused(write_flat("mesh", {"height", "index"}, {{"grid_type", "unstructured"}}),
-          {"triangular grids are not read yet"});
+          {"the cells of the grid have no place", "along index"});
   refused(write_flat("no_axes", {"lev", "y", "x"}), {"no coordinates"});
   refused(write_flat("members", {"number", "lev", "lat", "lon"}), {"dimension too many"});
 }

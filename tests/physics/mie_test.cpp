@@ -8,6 +8,7 @@
 
 #include "accuracy_report.h"
 #include "core/error.h"
+#include "optics/hg_draine.h"
 #include "optics/mie_table.h"
 #include "physics/physics_cpp.h"
 #include "truth_table.h"
@@ -192,8 +193,60 @@ TEST(PhaseTable, HoldsHenyeyGreenstein) {
   EXPECT_LE(norm, 1e-4);
 }
 
+// Against constants worked out apart from this program, the moments of its own curve, and Mie.
+TEST(HgDraine, IsTheFitToDroplets) {
+  const HgDraine fit = hg_draine_fit(10e-6);
+  EXPECT_NEAR(fit.peak_asymmetry, 0.99461, 1e-6);
+  EXPECT_NEAR(fit.draine_asymmetry, 0.593791, 1e-6);
+  EXPECT_NEAR(fit.alpha, 27.113694, 1e-5);
+  EXPECT_NEAR(fit.draine_part, 0.498159, 1e-6);
+  EXPECT_NEAR(fit.asymmetry(), 0.87931, 1e-5);
+  EXPECT_NEAR(fit.value(2), 0.13715 / (4 * pi), 1e-6);
+  EXPECT_NEAR(hg_draine_fit(5e-6).asymmetry(), 0.864164, 1e-6);
+  EXPECT_NEAR(hg_draine_fit(20e-6).asymmetry(), 0.889028, 1e-6);
+}
+
+TEST(HgDraine, IsHeldByItsTable) {
+  double worst = 0, norm = 0, moment = 0, from_mie = 0;
+  for (const double radius_m : {2.5e-6, 4e-6, 10e-6, 20e-6, 25e-6}) {
+    const Phase phase{PhaseKind::kHgDraine, radius_m, 0};
+    const HgDraine fit = hg_draine_fit(radius_m);
+    const std::vector<float> table = phase_table(phase);
+    for (double theta = 1e-3; theta < pi; theta *= 1.01) {
+      const double sine = std::sin(theta / 2);
+      worst = std::max(worst, std::abs(look_up(table, theta, 1) / fit.value(2 * sine * sine) - 1));
+    }
+    // Of the formula by the same quadrature: before the table is normalised they agree with it.
+    std::vector<float> plain(table.size());
+    for (int texel = 0; texel < kPhaseTexels; ++texel) {
+      const double sine = std::sin(phase_texel_angle_rad(texel) / 2);
+      plain[3 * std::size_t(texel)] = float(std::log(fit.value(2 * sine * sine)));
+    }
+    norm = std::max(norm, std::abs(phase_table_moments(plain, 0).integral - 1));
+    moment = std::max(moment, std::abs(phase_table_moments(table, 1).asymmetry - fit.asymmetry()));
+    EXPECT_EQ(phase_bulk(phase).asymmetry[0], fit.asymmetry());
+    if (radius_m < 4e-6) continue;
+    const double exact = phase_bulk({PhaseKind::kMie, radius_m, 0}).asymmetry[1];
+    from_mie = std::max(from_mie, std::abs(fit.asymmetry() - exact));
+  }
+  report_accuracy("Mie", "HG + Draine through the table", worst, 1e-3, "1");
+  report_accuracy("Mie", "HG + Draine, integral", norm, 2e-4, "1");
+  report_accuracy("Mie", "HG + Draine through the table, asymmetry", moment, 1e-4, "1");
+  report_accuracy("Mie", "HG + Draine instead of Mie, asymmetry", from_mie, 0.02, "1");
+  EXPECT_LE(worst, 1e-3);
+  EXPECT_LE(norm, 2e-4);
+  EXPECT_LE(moment, 1e-4);
+  EXPECT_LE(from_mie, 0.02);
+}
+
 TEST(PhaseTable, RefusesWhatItDoesNotHold) {
   Phase phase;
+  for (const double radius_m : {0.0, 2.4e-6, 26e-6, std::nan("")}) {
+    phase = {PhaseKind::kHgDraine, radius_m, 0};
+    EXPECT_THROW(phase_table(phase), Error);
+    EXPECT_THROW(phase_bulk(phase), Error);
+  }
+  phase = {};
   for (const double radius_m : {0.0, 3.9e-6, 31e-6, std::nan("")}) {
     phase.effective_radius_m = radius_m;
     EXPECT_THROW(phase_table(phase), Error);

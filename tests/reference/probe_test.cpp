@@ -9,7 +9,7 @@
 #include "accuracy_report.h"
 #include "analytic_field.h"
 #include "bricks/quantise.h"
-#include "march_picture.h"
+#include "reference/march_picture.h"
 #include "march_support.h"
 #include "random.h"
 #include "reference/error_metric.h"
@@ -18,7 +18,6 @@ namespace nepho {
 namespace {
 
 using test::FieldSource;
-using test::march_picture;
 
 constexpr double kSide_m = 1000;
 

@@ -10,7 +10,7 @@
 #include "gl/frame_data.h"
 #include "gl_fixture.h"
 #include "host/source_host.h"
-#include "march_picture.h"
+#include "reference/march_picture.h"
 #include "random.h"
 #include "reference/error_metric.h"
 #include "scenes.h"
@@ -242,7 +242,7 @@ TEST_F(ErrorLine, HoldsWithinThreeOnScenesDrawnFromASeed) {
                         picture_error(cut, finest));
     EXPECT_GE(result.error.quantisation, 0);
     EXPECT_LE(result.error.quantisation, 1e-3);
-    EXPECT_EQ(result.error.light_model_basis, "table, slabs");
+    EXPECT_NE(result.error.light_model_basis.find("paths a pixel"), std::string::npos);
   }
 }
 

@@ -15,8 +15,7 @@ constexpr double kRadius_m = 1e9, kBase_m = 200, kMuSun = 0.5;
 // A disc that phase functions and ground meet as often as it is sampled.
 constexpr double kWide_rad = 0.4;
 
-// Land in the middle of a map of 400 km, in cells of 1 km: rays from the ground start 2 % of a cell
-// above it.
+// Land in the middle of a map of 400 km, in cells of 1 km.
 std::shared_ptr<const SurfaceMap> land() {
   constexpr int n = 401;
   auto map = std::make_shared<SurfaceMap>();

@@ -11,16 +11,17 @@ namespace {
 
 constexpr double kOfFlux = 1.5e-3;
 
-double truth(double depth, const char* column) {
-  const TruthTable table(NEPHO_TRUTH_DIR "/slab_mie.csv");
+double truth(double depth, const char* column, const char* file = "/slab_mie.csv") {
+  const TruthTable table(std::string(NEPHO_TRUTH_DIR) + file);
   std::size_t row = 0;
   while (table.at(row, "tau") != depth) ++row;
   return table.at(row, column);
 }
 
-std::vector<Compared> fluxes(double depth, double planted = 1) {
+std::vector<Compared> fluxes(double depth, double planted = 1, const Phase& phase = {},
+                             const char* file = "/slab_mie.csv") {
   Medium medium;
-  add_slab(medium, Profile::kTent, planted * depth, Phase{}, 0);
+  add_slab(medium, Profile::kTent, planted * depth, phase, 0);
   const PathTracer& tracer = medium.tracer();
   const Ray down{{50, 50, kSlab_m + 1}, {0, 0, -1}};
   const auto history = [&](Random& random) {
@@ -30,7 +31,7 @@ std::vector<Compared> fluxes(double depth, double planted = 1) {
   const auto ours = measure_to<2>(1, history);
   std::vector<Compared> all;
   for (const auto& [name, estimate] : {std::pair{"R", ours[0]}, std::pair{"T_total", ours[1]}}) {
-    const double exact = truth(depth, name);
+    const double exact = truth(depth, name, file);
     all.push_back({name, estimate, {exact, kOfFlux * exact}});
   }
   return all;
@@ -41,6 +42,23 @@ TEST_P(MieSlabs, PassOnTheFluxOfTheTable) {
   expect_agreement("Mie slab, tau " + std::to_string(GetParam()), fluxes(GetParam()));
 }
 INSTANTIATE_TEST_SUITE_P(Truth, MieSlabs, testing::Values(4, 8, 16),
+                         testing::PrintToStringParamName());
+
+// The fit by HG + Draine against its own truth; against Mie's, how much it leaves out.
+constexpr const char* kFitted = "/slab_hg_draine.csv";
+const Phase kFit{PhaseKind::kHgDraine, 10e-6, 0};
+class FittedSlabs : public testing::TestWithParam<int> {};
+TEST_P(FittedSlabs, PassOnTheFluxOfTheFit) {
+  const std::vector<Compared> all = fluxes(GetParam(), 1, kFit, kFitted);
+  const std::string tau = std::to_string(GetParam());
+  expect_agreement("HG + Draine slab, tau " + tau, all);
+  const double off = all[0].ours.value / truth(GetParam(), "R") - 1;
+  report_accuracy("Path tracer against truth",
+                  "HG + Draine instead of Mie, slab, tau " + tau + ": R", off, 0.15, "1");
+  EXPECT_LT(off, 0);
+  EXPECT_GT(off, -0.15);
+}
+INSTANTIATE_TEST_SUITE_P(Truth, FittedSlabs, testing::Values(4, 16),
                          testing::PrintToStringParamName());
 
 TEST(MieSlabBias, OfExtinctionIsCaught) {

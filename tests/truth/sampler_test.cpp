@@ -133,6 +133,24 @@ INSTANTIATE_TEST_SUITE_P(Truth, Draine,
                                   std::to_string(int(1000 * with.param.g));
                          });
 
+class FittedDroplets : public testing::TestWithParam<int> {};
+TEST_P(FittedDroplets, AreSampledByTheirFormula) {
+  const Phase phase{PhaseKind::kHgDraine, GetParam() * 1e-6, 0};
+  const PhaseSampler sampler(phase);
+  EXPECT_TRUE(sampler.grey());
+  const auto sample = [&](Random& random) { return sampler.sample(1, random); };
+  const Followed followed =
+      follow_density(sample, [&](double down) { return sampler.value(1, down); });
+  EXPECT_NEAR(followed.integral, 1, 1e-5);
+  EXPECT_GT(followed.p, kAccept);
+  const auto turned_away =
+      measure_to<1>(1, [&](Random& random) { return std::array{sample(random).one_minus_cos}; });
+  expect_agreement("HG + Draine, " + std::to_string(GetParam()) + " um",
+                   {{"1 - asymmetry", turned_away[0], {1 - phase_bulk(phase).asymmetry[1]}}});
+}
+INSTANTIATE_TEST_SUITE_P(Truth, FittedDroplets, testing::Values(3, 10, 25),
+                         testing::PrintToStringParamName());
+
 TEST(Rayleigh, IsSampledByItsDensity) {
   const Followed followed = follow_density(
       sample_rayleigh, [](double down) { return 3 / (16 * pi) * (1 + (1 - down) * (1 - down)); });

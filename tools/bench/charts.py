@@ -3,8 +3,8 @@
 
   tools/bench/charts.py FILE.nc [OUT_DIR] [--nephoscope PROGRAM] [render options]
 
-Draws FILE without air and ground from the automatic view (or that of the options), once over the
-shell's finest bricks with a fine step (the truth), then over coarser levels of the shell and over
+Draws FILE, a forecast or a global analysis, without air and ground from the automatic view (or that
+of the options), once over the shell's finest bricks with a fine step (the truth), then over coarser levels of the shell and over
 levels of cubes that sample the same field. Prints one row a picture: chart, level, bricks,
 error of the picture (rms of luminance over its mean), and what each chart needs for the
 errors that both reach, by interpolation in the logarithms. Python's standard library only.
@@ -76,7 +76,8 @@ def main():
     out = pathlib.Path(words.pop(0) if words and not words[0].startswith("-") else "out/charts")
     out.mkdir(parents=True, exist_ok=True)
     first = out / "first.pfm"
-    run(program, "render", source, "--no-planet", "--size", "320x180", "--probe-pixels", "0",
+    size = [] if "--size" in words else ["--size", "320x180"]
+    run(program, "render", source, "--no-planet", *size, "--probe-pixels", "0",
         "--exposure", "0", *words, "-o", first)
     scene = scene_in(first)
     for volume in scene["volumes"]:
@@ -85,7 +86,7 @@ def main():
     truth, _, finest = draw(program, scene, "truth", out)
     rows = {"shell": [], "box": []}
     print("chart  level  bricks  picture error")
-    for below in range(1, LEVELS_BELOW + 1):
+    for below in range(1, min(LEVELS_BELOW, finest) + 1):
         scene["render"]["max_level"] = finest - below
         picture, bricks, level = draw(program, scene, f"shell_{level_name(finest - below)}", out)
         report(rows, "shell", level, bricks, error(program, picture, truth))

@@ -32,9 +32,17 @@ struct CompareOptions {
   bool json = false;
 };
 
+struct BenchOptions {
+  std::vector<std::string> scenes;  // each a section of the report
+  std::vector<std::string> sweeps;  // NAME=VALUE,VALUE,...
+  std::string output;               // a folder
+  std::optional<std::string> size, repeats, spp, exact_orders, host_mib, finest_step;
+};
+
 // Each throws Error for what a user can cause, and prints its result on standard output.
 void render_command(const RenderOptions& options);
 void info_command(const InfoOptions& options);
 void compare_command(const CompareOptions& options);
+void bench_command(const BenchOptions& options);
 
 }  // namespace nepho

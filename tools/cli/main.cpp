@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <new>
 
+#include "bench/sweep.h"
 #include "cli/commands.h"
 #include "common/output_file.h"
 #include "core/error.h"
@@ -30,7 +31,8 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
   nephoscope info wrfout_d01.nc --check                  and how well the bricks hold it
   nephoscope compare a.exr b.exr                         how far two pictures are apart
-  nephoscope compare a.exr b.exr --diff apart.png        and where (FLIP))";
+  nephoscope compare a.exr b.exr --diff apart.png        and where (FLIP)
+  nephoscope bench scene.json --sweep step=0.5,1,2 --sweep budget-mib=64,256 -o report)";
 
 constexpr const char* kRegion = "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF, GRIB)";
 
@@ -147,6 +149,22 @@ void add_compare_options(CLI::App& command, CompareOptions& o) {
   command.add_flag("--json", o.json, "for programs");
 }
 
+void add_bench_options(CLI::App& command, BenchOptions& o) {
+  command
+      .add_option("--sweep", o.sweeps,
+                  "NAME=VALUE,...; several: every combination. Of " + bench::known_settings())
+      ->allow_extra_args(false);
+  command.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (96x54)");
+  command.add_option("--repeat", o.repeats, "runs that are timed, after a warm-up (5)");
+  command.add_option("--spp", o.spp,
+                     "most paths a pixel of the truth (4096); 0: no path tracing, no light model");
+  command.add_option("--exact-orders", o.exact_orders,
+                     "of the truth: scatterings that keep a Mie phase function (all)");
+  command.add_option("--host-mib", o.host_mib, "memory for the finest bricks (1024)");
+  command.add_option("--finest-step", o.finest_step,
+                     "voxels, of what steps are measured against (a quarter of the finest step)");
+}
+
 // A value given twice is a bad value; CLI11 calls it the same as a missing one.
 void refuse_repeated(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands())
@@ -198,6 +216,15 @@ int run(int argc, char** argv) {
   differ->add_option("B", compare.b, "the truth")->required();
   add_compare_options(*differ, compare);
   differ->callback([&] { compare_command(compare); });
+
+  BenchOptions bench;
+  CLI::App* measure =
+      app.add_subcommand("bench", "error against run time: settings of scenes, as a report");
+  measure->add_option("SCENE", bench.scenes, "SCENE.json, PICTURE or data FILE, one section each")
+      ->required();
+  measure->add_option("-o,--output", bench.output, "folder of the report")->required();
+  add_bench_options(*measure, bench);
+  measure->callback([&] { bench_command(bench); });
 
   try {
     app.parse(argc, argv);

@@ -80,7 +80,7 @@ ReferencePicture draw_reference(const OpenedScene& opened) {
   const Forest forest = goals.levels == PathLevels::kFinest
                             ? finest_forest(request, goals.host_mib)
                             : build_forest(request.volumes, gl::refinement_of(request));
-  const PathTracer tracer(forest, request);
+  const PathTracer tracer(forest, request, {.exact_orders = goals.exact_orders});
   const StopRequest interrupt;
   const Progress progress(goal);
   const PathPicture picture = path_trace(tracer, request, goal, [&](const PathPicture& so_far) {

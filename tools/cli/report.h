@@ -9,7 +9,7 @@
 namespace nepho {
 
 // "error (estimated): integration 0.3 %, level of detail 1.2 %, quantisation 0.01 %, light model
-// 30 % (table, slabs)": what every render prints and stores.
+// 30 % (16 paths a pixel)": what every render prints and stores.
 std::string error_line(const ErrorEstimate& error);
 
 // Process so far: CPU of all threads, time since its start, largest resident size.

@@ -7,6 +7,7 @@
 #include "common/framing.h"
 #include "common/planet_scene.h"
 #include "core/error.h"
+#include "optics/phase_table.h"
 #include "scene/scene_file.h"
 #include "sun/sun_position.h"
 
@@ -210,6 +211,16 @@ double first_time_with_cloud(const BrickSource& source) {
   return time_of({}, info);
 }
 
+// What the fit costs: light that has been scattered often knows of (1 - asymmetry) x depth only.
+std::string fit_note(const Phase& fit) {
+  constexpr double kLeastOfMie_m = 4e-6;  // of the table
+  const Phase mie{PhaseKind::kMie, std::max(fit.effective_radius_m, kLeastOfMie_m), 0};
+  const double g = phase_bulk(fit).asymmetry[1], exact = phase_bulk(mie).asymmetry[1];
+  return "phase hg_draine: a fit to droplets of asymmetry " + number_text(g) + ", Mie's is " +
+         number_text(exact) + ": light after many scatterings sees " +
+         number_text(100 * (1 - (1 - g) / (1 - exact))) + " % less cloud; no fogbow, no glory";
+}
+
 OpenedScene open_scene(const SourceHost& host, Scene scene) {
   OpenedScene opened;
   opened.scene = std::move(scene);
@@ -221,6 +232,9 @@ OpenedScene open_scene(const SourceHost& host, Scene scene) {
                                       volume.co_albedo.value_or(info.co_albedo)});
     for (const std::string& text : info.assumptions)
       opened.assumptions.push_back(info.name + ": " + text);
+    if (opened.request.volumes.back().phase.kind == PhaseKind::kHgDraine)
+      opened.assumptions.push_back(info.name + ": " +
+                                   fit_note(opened.request.volumes.back().phase));
   }
   const Placement frame = scene_frame(opened.scene);
   resolve_planet(opened);

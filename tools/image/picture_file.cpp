@@ -141,6 +141,8 @@ void PictureFiles::write(const std::filesystem::path& path, PictureFormat format
     case PictureFormat::kPfm:
       return write_pfm(path, first_three(linear), metadata);
     case PictureFormat::kPng:
+      view.width = shown.width;
+      view.height = shown.height;
       view.type = PixelType::kByte;
       view.pixels = shown.values.data();
       return write_through_module(open_module(folders_, "x.png"), path, "png", view, metadata);

@@ -87,7 +87,9 @@ double exposure_on_planet(const FloatImage& radiance, std::span<const float> opt
                           double white) {
   constexpr double kNextToNone = 0.005, kDark = 0.1, kClear = 0.8;
   Luminances y = luminances(radiance, optical_depth);
-  [[maybe_unused]] const double dark = kDark * percentile(y.all, 0.995);
+  // The sun's glint on the sea is far brighter than any cloud or ground.
+  const double lit = std::max(white, percentile(y.cloud, 0.995));
+  [[maybe_unused]] const double dark = kDark * std::min(percentile(y.all, 0.995), lit);
 #ifndef NEPHO_MUTANT_DARK_COUNTS
   std::erase_if(y.cloud, [&](double cloud) { return cloud < dark; });
 #endif

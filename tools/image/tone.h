@@ -25,9 +25,9 @@ double exposure_from(const FloatImage& radiance, std::span<const float> optical_
 
 // The same on a planet, where there is sky and ground, and perhaps a night side. `white` is the
 // luminance of a white surface in this sun. Clouds in the dark (below a tenth of the picture's
-// bright end) do not count; a grey sky stays grey, as no cloud is brought up by more than
-// kGreyCloud's inverse; and where there is next to no cloud, what counts is the white surface, or
-// the bright end of the picture where that is brighter: a low sun.
+// bright end, but for what only glint reaches) do not count; a grey sky stays grey, as no cloud is
+// brought up by more than kGreyCloud's inverse; and where there is next to no cloud, what counts is
+// the white surface, or the bright end of the picture where that is brighter: a low sun.
 inline constexpr double kGreyCloud = 0.4;
 double exposure_on_planet(const FloatImage& radiance, std::span<const float> optical_depth,
                           double white);

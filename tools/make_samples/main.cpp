@@ -11,6 +11,7 @@
 #include "cumulus.h"
 #include "global_forecast.h"
 #include "les_field.h"
+#include "made_vertical.h"
 #include "nc_twins.h"
 #include "plume.h"
 #include "twins.h"
@@ -28,25 +29,34 @@ constexpr const char* kUsage =
     "usage: make_samples OUT_DIR [--only NAME,...] [--size small|default|large] [--force]\n"
     "       make_samples OUT_DIR [--only NAME] --size NXxNYxNZ [--times N]\n"
     "       make_samples OUT_DIR --like TWIN | all\n"
+    "       make_samples OUT_DIR --grid GRID --vertical VERTICAL [--order up|down]\n"
     "       make_samples --list\n";
 
 constexpr const char* kHelp =
     "\nSamples (NAME): cumulus and plume (.vdb), forecast (in the form of WRF), les (a large-eddy\n"
-    "simulation in CF NetCDF), globe (a packed global analysis on 16 pressure levels).\n"
+    "simulation in CF NetCDF), globe (a packed global analysis on 16 pressure levels). By --only "
+    "alone:\n"
+    "pair, two clouds 26 km apart in one .vdb of 2128 x 192 x 1192 voxels, nearly all of them "
+    "empty.\n"
     "--size NXxNYxNZ makes one of the NetCDF samples (forecast where --only names none) with so "
     "many\n"
     "cells, one level in memory at a time, into NAME_NXxNYxNZ.nc; --times: of a forecast, hourly.\n"
     "--like makes a small twin of a trap in real files. Example: a forecast of 200 x 200 x 40 "
     "cells\n"
     "and three times,\n"
-    "  make_samples /tmp/big --size 200x200x40 --times 3\n\nTwins:\n";
+    "  make_samples /tmp/big --size 200x200x40 --times 3\n\n"
+    "--grid and --vertical make GRID_VERTICAL_ORDER.nc: one cloud on a grid and on levels of "
+    "those\n"
+    "names (--list), levels from the ground up or the top down, by formulas that share nothing "
+    "with\n"
+    "the reader.\n\nTwins:\n";
 
 struct Cells {
   std::size_t nx = 0, ny = 0, nz = 0;
 };
 
 struct Options {
-  std::string folder, size = "default", like;
+  std::string folder, size = "default", like, grid, vertical, order = "up";
   std::vector<std::string> only;
   std::optional<Cells> cells;
   std::size_t times = 1;
@@ -80,6 +90,12 @@ bool parse(int count, char** words, Options& o) {
       o.times = std::size_t(std::max(0, std::atoi(words[++at])));
     } else if (word == "--like" && has_next) {
       o.like = words[++at];
+    } else if (word == "--grid" && has_next) {
+      o.grid = words[++at];
+    } else if (word == "--vertical" && has_next) {
+      o.vertical = words[++at];
+    } else if (word == "--order" && has_next) {
+      o.order = words[++at];
     } else if (word == "--only" && has_next) {
       std::istringstream names(words[++at]);
       for (std::string name; std::getline(names, name, ',');) o.only.push_back(name);
@@ -90,6 +106,7 @@ bool parse(int count, char** words, Options& o) {
     }
   }
   const bool known = o.size == "small" || o.size == "default" || o.size == "large" || o.cells;
+  if (o.grid.empty() != o.vertical.empty()) return false;
   const bool fits = o.times >= 1 && o.times <= 1000 && (o.times == 1 || o.cells);
   return known && fits && (o.list || o.help || !o.folder.empty());
 }
@@ -119,6 +136,25 @@ void write_cumulus(const fs::path& folder, double scale) {
   grid.value = VdbValue::kHalf;
   writer.write(folder / "cumulus.vdb", {grid});
   report(folder / "cumulus.vdb", start_s);
+}
+
+// One cloud twice: a box of 487 million voxels, 1.9 GB where they are stored densely.
+void write_pair(const fs::path& folder) {
+  constexpr double kFiner = 1.6;
+  constexpr Voxel kApart{1872, 0, 936};  // 26.2 km
+  const double start_s = seconds();
+  CumulusShape shape;
+  shape.voxel_m /= kFiner;
+  for (auto& cells : shape.size) cells = 8 * std::int32_t(kFiner * cells / 8);
+  SampleGrid grid = make_cumulus(shape);
+  grid.value = VdbValue::kHalf;
+  std::vector<SampleBlock> twin = grid.blocks;
+  for (SampleBlock& block : twin)
+    for (std::size_t a = 0; a < 3; ++a) block.origin[a] += kApart[a];
+  grid.blocks.insert(grid.blocks.end(), twin.begin(), twin.end());
+  const fs::path path = folder / "pair.vdb";
+  VdbWriter(module_folders()).write(path, {grid});
+  report(path, start_s);
 }
 
 void write_plume(const fs::path& folder, double scale) {
@@ -175,7 +211,7 @@ void write_globe(const fs::path& path, double scale, const Options& o) {
 
 // A build without OpenVDB or NetCDF makes what it can.
 bool can_write(const std::string& name) {
-  const bool vdb = name == "cumulus" || name == "plume";
+  const bool vdb = name == "cumulus" || name == "plume" || name == "pair";
   return fs::exists(module_folders().front() /
                     (vdb ? "nepho_vdb_writer.so" : "nepho_nc_writer.so"));
 }
@@ -186,6 +222,7 @@ void write_sample(const std::string& name, const fs::path& folder, double scale,
   const fs::path path = folder / (name + (o.cells ? "_" + o.size : "") + ".nc");
   if (name == "cumulus") write_cumulus(folder, scale);
   if (name == "plume") write_plume(folder, scale);
+  if (name == "pair") write_pair(folder);
   if (name == "forecast") write_forecast(path, scale, o);
   if (name == "les") write_les_sample(path, scale, o);
   if (name == "globe") write_globe(path, scale, o);
@@ -193,7 +230,7 @@ void write_sample(const std::string& name, const fs::path& folder, double scale,
 
 void write_large(const Options& o) {
   const std::string name = o.only.empty() ? "forecast" : o.only.front();
-  if (o.only.size() > 1 || name == "cumulus" || name == "plume")
+  if (o.only.size() > 1 || name == "cumulus" || name == "plume" || name == "pair")
     throw Error({"no such size of it", "--size " + o.size, "with --only forecast, les or globe",
                  "--only " + name, ""});
   if (name == "globe" && o.cells->nz != 16)
@@ -209,8 +246,9 @@ void write_large(const Options& o) {
 void write_samples(const Options& o) {
   std::vector<std::string> wanted = o.only.empty() ? kNames : o.only;
   for (const std::string& name : wanted)
-    if (std::ranges::find(kNames, name) == kNames.end())
-      throw Error({"no such sample", "--only", "cumulus, plume, forecast, les or globe", name, ""});
+    if (std::ranges::find(kNames, name) == kNames.end() && name != "pair")
+      throw Error(
+          {"no such sample", "--only", "cumulus, plume, forecast, les, globe or pair", name, ""});
   const fs::path folder = o.folder, note = folder / "samples.done";
   std::string text = "version " + std::to_string(kVersion) + ", size " + o.size;
   if (o.only.empty())
@@ -256,6 +294,21 @@ void print_twins() {
   for (const Twin& twin : twins()) std::printf("%-20s %s\n", twin.name.c_str(), twin.what.c_str());
   for (const NcTwin& twin : nc_twins())
     std::printf("%-20s %s\n", twin.name.c_str(), twin.what.c_str());
+  const auto list = [](const char* what, const std::vector<std::string>& names) {
+    std::printf("%s:", what);
+    for (const std::string& name : names) std::printf(" %s", name.c_str());
+    std::printf("\n");
+  };
+  list("--grid", made_grid_names());
+  list("--vertical", made_vertical_names());
+}
+
+void write_made_file(const Options& o) {
+  const fs::path path = fs::path(o.folder) / (o.grid + "_" + o.vertical + "_" + o.order + ".nc");
+  fs::create_directories(o.folder);
+  const double start_s = seconds();
+  write_made(path, o.grid, o.vertical, o.order, NcWriter(module_folders()));
+  report(path, start_s);
 }
 
 }  // namespace
@@ -267,6 +320,8 @@ int main(int count, char** words) {
     if (options.help) std::printf("%s%s", kUsage, kHelp);
     if (options.help || options.list)
       print_twins();
+    else if (!options.grid.empty())
+      write_made_file(options);
     else if (!options.like.empty())
       write_all_twins(options);
     else if (options.cells)

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "global_forecast.h"
+#include "tiny_file.h"
 #include "wrf_forecast.h"
 
 namespace nepho::samples {
@@ -14,39 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr double kFill = -9999;
-
-// A whole file in memory, to be spoilt.
-struct TinyFile {
-  NcLayout layout;
-  std::map<std::string, std::vector<double>> values;
-
-  std::vector<double>& water() { return values.at("clw"); }
-  void scale(const std::string& field, double factor) {
-    for (double& v : values.at(field)) v *= factor;
-  }
-  void reverse(const std::string& axis);  // with all that lies along it
-};
-
-std::size_t size_of(const NcLayout& layout, const std::vector<std::string>& axes) {
-  std::size_t size = 1;
-  for (const std::string& axis : axes) size *= layout.length(axis);
-  return size;
-}
-
-void TinyFile::reverse(const std::string& axis) {
-  for (const NcField& f : layout.fields) {
-    const auto found = std::ranges::find(f.axes, axis);
-    if (found == f.axes.end()) continue;
-    const std::size_t inner = size_of(layout, {found + 1, f.axes.end()});
-    const std::size_t length = layout.length(axis);
-    std::vector<double>& all = values.at(f.name);
-    for (std::size_t block = 0; block < all.size(); block += inner * length)
-      for (std::size_t a = 0, b = length - 1; a < b; ++a, --b)
-        std::swap_ranges(all.begin() + std::ptrdiff_t(block + a * inner),
-                         all.begin() + std::ptrdiff_t(block + (a + 1) * inner),
-                         all.begin() + std::ptrdiff_t(block + b * inner));
-  }
-}
 
 // 2 times, 12 levels 250 m apart, 16 x 20 places 0.02 degrees apart.
 TinyFile plain() {
@@ -96,28 +64,13 @@ TinyFile plain() {
   return file;
 }
 
-void write(const fs::path& path, const TinyFile& file, const NcWriter& writer) {
-  NcOutput output(writer, path, file.layout);
-  for (const NcField& f : file.layout.fields) {
-    const std::size_t leading = f.axes.size() > 2 ? f.axes.size() - 2 : 0;
-    const std::size_t slab =
-        size_of(file.layout, {f.axes.begin() + std::ptrdiff_t(leading), f.axes.end()});
-    const std::vector<double>& all = file.values.at(f.name);
-    for (std::size_t at = 0; at * slab < all.size(); ++at)
-      output.put(
-          f.name, at,
-          {all.begin() + std::ptrdiff_t(at * slab), all.begin() + std::ptrdiff_t((at + 1) * slab)});
-  }
-  output.finish();
-}
-
 NcTwin changed(const std::string& name, const std::string& what,
                const std::function<void(TinyFile&)>& change) {
   return {name, what,
           [=](const fs::path& folder, const NcWriter& writer) {
             TinyFile file = plain();
             change(file);
-            write(folder / (name + ".nc"), file, writer);
+            write_tiny(folder / (name + ".nc"), file, writer);
           },
           name + ".nc"};
 }
@@ -127,7 +80,7 @@ NcTwin spoilt(const std::string& name, const std::string& what,
   return {name, what,
           [=](const fs::path& folder, const NcWriter& writer) {
             const fs::path path = folder / (name + ".nc");
-            write(path, plain(), writer);
+            write_tiny(path, plain(), writer);
             std::ifstream in(path, std::ios::binary);
             const std::string intact((std::istreambuf_iterator<char>(in)), {});
             in.close();
@@ -163,7 +116,7 @@ void pack(TinyFile& file) {
                              NcNote{"add_offset", "", {offset}, NcValue::kDouble},
                              NcNote{"_FillValue", "", {-32767}, NcValue::kShort}})
     field.notes.push_back(note);
-  for (double& v : file.water()) v = std::round((v - offset) / step);
+  for (double& v : file.values.at("clw")) v = std::round((v - offset) / step);
 }
 
 void make_profiles(TinyFile& file) {  // time x height, as of one station
@@ -190,27 +143,7 @@ void make_triangles(TinyFile& file) {  // ICON's own grid: cells in a row
     l.field(name).notes.push_back({"CDI_grid_type", "unstructured"});
     l.field(name).notes.push_back({"coordinates", "clat clon"});
   }
-  std::vector<double> lat, lon;
-  for (std::size_t at = 0; at < 320; ++at) {
-    lat.push_back(file.values.at("lat")[at / 20] * 3.14159265 / 180);
-    lon.push_back(file.values.at("lon")[at % 20] * 3.14159265 / 180);
-  }
   drop(file, "lat"), drop(file, "lon");
-  l.fields.push_back({"clat",
-                      NcValue::kDouble,
-                      {"ncells"},
-                      {{"standard_name", "latitude"}, {"units", "radian"}, {"bounds", "clat_v"}}});
-  l.fields.push_back({"clon",
-                      NcValue::kDouble,
-                      {"ncells"},
-                      {{"standard_name", "longitude"}, {"units", "radian"}, {"bounds", "clon_v"}}});
-  file.values["clat"] = lat, file.values["clon"] = lon;
-  for (const char* name : {"clat", "clon"}) {
-    const std::string corners = std::string(name) + "_v";
-    l.fields.push_back({corners, NcValue::kDouble, {"ncells", "nv"}, {{"units", "radian"}}});
-    for (const double centre : file.values.at(name))
-      for (const double off : {-1e-4, 0.0, 1e-4}) file.values[corners].push_back(centre + off);
-  }
 }
 
 std::vector<NcTwin> regular() {
@@ -231,7 +164,7 @@ std::vector<NcTwin> regular() {
       changed("nc_packed_zero", "16-bit numbers whose zero unpacks to -1e-19", pack),
       changed("nc_negative", "tiny negative amounts where there is no cloud",
               [](TinyFile& f) {
-                for (double& v : f.water()) v = v == 0 ? -7.9e-14 : v;
+                for (double& v : f.values.at("clw")) v = v == 0 ? -7.9e-14 : v;
               }),
       changed("nc_top_down", "levels from the top down", [](TinyFile& f) { f.reverse("height"); }),
       changed("nc_descending_lat", "latitudes from north to south",
@@ -246,11 +179,13 @@ std::vector<NcTwin> regular() {
                 f.layout.set_note("clw", {"units", "g kg-1"});
               }),
       changed("nc_fill_time", "the first time is missing as a whole",
-              [](TinyFile& f) { std::fill_n(f.water().begin(), f.water().size() / 2, kFill); }),
+              [](TinyFile& f) {
+                std::fill_n(f.values.at("clw").begin(), f.values.at("clw").size() / 2, kFill);
+              }),
       changed("nc_some_nan", "a few values are not numbers",
               [](TinyFile& f) {
-                for (std::size_t at = 0; at < f.water().size(); at += 97)
-                  f.water()[at] = std::numeric_limits<double>::quiet_NaN();
+                for (std::size_t at = 0; at < f.values.at("clw").size(); at += 97)
+                  f.values.at("clw")[at] = std::numeric_limits<double>::quiet_NaN();
               }),
       changed("nc_classic", "the classic format",
               [](TinyFile& f) { f.layout.format = NcFormat::kClassic; }),
@@ -288,15 +223,15 @@ std::vector<NcTwin> refused() {
                 for (double& v : f.values.at("lat")) v += 43;
               }),
       changed("nc_all_fill", "nothing but missing values",
-              [](TinyFile& f) { std::ranges::fill(f.water(), kFill); }),
+              [](TinyFile& f) { std::ranges::fill(f.values.at("clw"), kFill); }),
       changed("nc_all_nan", "nothing but values that are not numbers",
               [](TinyFile& f) {
-                std::ranges::fill(f.water(), std::numeric_limits<double>::quiet_NaN());
+                std::ranges::fill(f.values.at("clw"), std::numeric_limits<double>::quiet_NaN());
               }),
       changed("nc_no_cloud", "temperature and pressure, no cloud",
               [](TinyFile& f) { drop(f, "clw"); }),
       changed("nc_time_height", "profiles of one station", make_profiles),
-      changed("nc_triangles", "ICON's triangles", make_triangles),
+      changed("nc_triangles", "ICON's triangles without their grid", make_triangles),
       spoilt("nc_text", "text named .nc",
              [](const std::string&) { return std::string("netcdf but not really\n"); }),
       spoilt("nc_no_bytes", "an empty file", [](const std::string&) { return std::string(); }),

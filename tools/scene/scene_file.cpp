@@ -46,9 +46,12 @@ glm::dvec3 read_direction(const ObjectReader& in, std::string_view field) {
 Phase read_phase(const ObjectReader& in) {
   in.require("kind");
   Phase phase;
-  const bool mie = *in.text("kind") == "mie";
-  phase.kind = mie ? PhaseKind::kMie : PhaseKind::kHenyeyGreenstein;
-  const std::string_view foreign = mie ? "asymmetry" : "effective_radius_m";
+  const std::string kind = *in.text("kind");
+  phase.kind = kind == "mie"         ? PhaseKind::kMie
+               : kind == "hg_draine" ? PhaseKind::kHgDraine
+                                     : PhaseKind::kHenyeyGreenstein;
+  const bool droplets = phase.kind != PhaseKind::kHenyeyGreenstein;
+  const std::string_view foreign = droplets ? "asymmetry" : "effective_radius_m";
   if (in.has(foreign))
     throw Error({"does not belong to this phase function", in.where(foreign), "", "", ""});
   phase.effective_radius_m = in.number("effective_radius_m").value_or(phase.effective_radius_m);
@@ -225,6 +228,7 @@ void read_render(const ObjectReader& in, RenderSettings& settings) {
   settings.max_level = in.integer("max_level").value_or(settings.max_level);
   settings.seed = std::uint64_t(in.number("seed").value_or(double(settings.seed)));
   settings.probe_pixels = in.integer("probe_pixels").value_or(settings.probe_pixels);
+  settings.probe_paths = in.integer("probe_paths").value_or(settings.probe_paths);
   if (const auto engine = in.text("engine"))
     settings.engine = *engine == "march" ? Engine::kMarch : Engine::kReference;
   if (const auto paths = in.object("paths")) {

@@ -24,7 +24,7 @@ constexpr FieldGrammar kPlaceFields[] = {
 constexpr ObjectGrammar kPlace{"place", kPlaceFields};
 
 constexpr FieldGrammar kPhaseFields[] = {
-    {"kind", kChoice, 0, 0, "mie|henyey_greenstein"},
+    {"kind", kChoice, 0, 0, "mie|henyey_greenstein|hg_draine"},
     {"effective_radius_m", kNumber, 1e-7, 1e-3},
     {"asymmetry", kNumber, -0.9999, 0.9999},
 };
@@ -136,6 +136,7 @@ constexpr FieldGrammar kRenderFields[] = {
     {"max_level", kInteger, 0, 31},
     {"seed", kInteger, 0, kLargestExact},
     {"probe_pixels", kInteger, 0, 1e6},
+    {"probe_paths", kInteger, 0, 1e6},
     {"engine", kChoice, 0, 0, "march|reference"},
     {"paths", kObject, 0, 0, {}, &kPaths},
 };

@@ -35,6 +35,13 @@ Json write_parameter(const SourceParameter& parameter) {
   return parameter.number;
 }
 
+Json write_phase(const Phase& phase) {
+  if (phase.kind == PhaseKind::kHenyeyGreenstein)
+    return {{"kind", "henyey_greenstein"}, {"asymmetry", phase.asymmetry}};
+  return {{"kind", phase.kind == PhaseKind::kMie ? "mie" : "hg_draine"},
+          {"effective_radius_m", phase.effective_radius_m}};
+}
+
 Json write_volume(const VolumeSpec& volume, const std::filesystem::path& folder) {
   Json out{{"name", volume.name}, {"source", volume.source}};
   for (const std::string& file : volume.files)
@@ -42,10 +49,7 @@ Json write_volume(const VolumeSpec& volume, const std::filesystem::path& folder)
   for (const SourceParameter& parameter : volume.parameters)
     out["parameters"][parameter.name] = write_parameter(parameter);
   if (volume.place) out["place"] = write_place(*volume.place);
-  if (volume.phase && volume.phase->kind == PhaseKind::kMie)
-    out["phase"] = {{"kind", "mie"}, {"effective_radius_m", volume.phase->effective_radius_m}};
-  if (volume.phase && volume.phase->kind == PhaseKind::kHenyeyGreenstein)
-    out["phase"] = {{"kind", "henyey_greenstein"}, {"asymmetry", volume.phase->asymmetry}};
+  if (volume.phase) out["phase"] = write_phase(*volume.phase);
   if (volume.co_albedo) out["co_albedo"] = vector(*volume.co_albedo);
   if (volume.time_s) out["time_s"] = *volume.time_s;
   if (volume.utc_ns) out["utc"] = utc_text(*volume.utc_ns);
@@ -122,6 +126,7 @@ Json write_render(const RenderSettings& settings) {
   out["max_level"] = settings.max_level;
   out["seed"] = settings.seed;
   out["probe_pixels"] = settings.probe_pixels;
+  out["probe_paths"] = settings.probe_paths;
   if (settings.engine == Engine::kMarch) return out;
   out["engine"] = "reference";
   Json& paths = out["paths"];

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/nearest_places.h"
+
 namespace nepho::forecast {
 namespace {
 
@@ -12,24 +14,75 @@ constexpr int kSeeds = 40;  // an axis
 
 }  // namespace
 
-glm::dvec3 unit_vector(glm::dvec2 lat_lon_deg) {
-  const double lat = lat_lon_deg.x * kDegree, lon = lat_lon_deg.y * kDegree;
-  return {std::cos(lat) * std::cos(lon), std::cos(lat) * std::sin(lon), std::sin(lat)};
+struct GridSearch::PolygonCells {
+  NearestPlaces centres;
+  const CellPolygons& cells;
+
+  // Sides of the cell's walls that a direction lies on: the same for all, if inside.
+  bool holds(std::uint32_t cell, const glm::dvec3& u) const {
+    int left = 0, right = 0;
+    const std::uint32_t begin = cells.first[cell], end = cells.first[cell + 1];
+    for (std::uint32_t at = begin; at < end; ++at) {
+      const glm::dvec3 a = unit_vector(cells.corner_deg[at]),
+                       b = unit_vector(cells.corner_deg[at + 1 < end ? at + 1 : begin]);
+      const double side = glm::dot(glm::cross(a, b), u);
+      left += side > 0;
+      right += side < 0;
+    }
+    return left == 0 || right == 0;
+  }
+};
+
+namespace {
+
+// Solid angle of a cell (sr), of flat triangles between its corners.
+double area_of(const CellPolygons& cells, std::size_t cell) {
+  glm::dvec3 sum(0.0);
+  const std::uint32_t begin = cells.first[cell], end = cells.first[cell + 1];
+  for (std::uint32_t at = begin; at < end; ++at)
+    sum += glm::cross(unit_vector(cells.corner_deg[at]),
+                      unit_vector(cells.corner_deg[at + 1 < end ? at + 1 : begin]));
+  return glm::length(sum) / 2;
 }
 
-glm::dvec2 lat_lon_deg_of(const glm::dvec3& u) {
-  return {std::atan2(u.z, std::hypot(u.x, u.y)) / kDegree, std::atan2(u.y, u.x) / kDegree};
+constexpr std::size_t kCandidates = 8;  // cells whose centres are nearest
+
+}  // namespace
+
+double polygon_width_rad(const CellPolygons& cells, std::size_t cell) {
+  return std::sqrt(area_of(cells, cell));
 }
 
 GridSearch::GridSearch(std::shared_ptr<const HorizontalGrid> grid) : grid_(std::move(grid)) {
+  if (const CellPolygons* polygons = grid_->polygons()) {
+    std::vector<glm::dvec3> centres;
+    glm::dvec3 sum(0.0);
+    for (int n = 0; n < grid_->nx(); ++n) {
+      centres.push_back(direction({n + 0.5, 0.5}));
+      sum += centres.back();
+    }
+    cells_ = std::make_shared<const PolygonCells>(
+        PolygonCells{NearestPlaces(std::move(centres)), *polygons});
+    middle_ = {cells_->centres.nearest(sum / (glm::length(sum) + 1e-300), 1).front() + 0.5, 0.5};
+    cell_rad_ = polygon_width_rad(*polygons, std::size_t(middle_.x));
+    return;
+  }
   const int nx = grid_->nx(), ny = grid_->ny();
   step_ = std::max(1, (std::max(nx, ny) + kSeeds - 1) / kSeeds);
   for (int j = 0; j < ny; j += step_)
     for (int i = 0; i < nx; i += step_) {
       const glm::dvec2 at = {i + 0.5, j + 0.5};
-      seeds_.push_back({at, direction(at)});
+      const glm::dvec3 u = direction(at);
+      if (!std::isnan(u.x)) seeds_.push_back({at, u});
     }
-  const glm::dvec2 middle = {nx / 2.0, ny / 2.0};
+  if (seeds_.empty()) seeds_.push_back({{nx / 2.0, ny / 2.0}, glm::dvec3(0.0)});
+  const auto to_middle = [&](const Seed& seed) {
+    return glm::length(seed.at - glm::dvec2(nx / 2.0, ny / 2.0));
+  };
+  const glm::dvec2 exact = {nx / 2.0, ny / 2.0};
+  const glm::dvec2 middle =
+      std::isnan(direction(exact).x) ? std::ranges::min_element(seeds_, {}, to_middle)->at : exact;
+  middle_ = middle;
   const glm::dvec3 here = direction(middle);
   cell_rad_ = std::min(glm::length(direction(middle - glm::dvec2(0.5, 0)) - here),
                        glm::length(direction(middle - glm::dvec2(0, 0.5)) - here)) *
@@ -126,12 +179,20 @@ GridSearch::Found GridSearch::near_pole(const glm::dvec3& wanted, Found found) c
 
 GridSearch::Found GridSearch::find(glm::dvec2 lat_lon_deg) const {
   const glm::dvec3 wanted = unit_vector(lat_lon_deg);
+  if (cells_) {
+    const std::vector<std::uint32_t> near = cells_->centres.nearest(wanted, kCandidates);
+    for (const std::uint32_t cell : near)
+      if (cells_->holds(cell, wanted)) return {{cell + 0.5, 0.5}, 0};
+    const double away = glm::length(cells_->centres[near.front()] - wanted);
+    return {{near.front() + 0.5, 0.5}, std::max(away / cell_rad_, 1e-3)};
+  }
   const auto nearest = std::ranges::max_element(
       seeds_, {}, [&](const Seed& seed) { return glm::dot(seed.direction, wanted); });
   return near_pole(wanted, polish(wanted, walk(wanted, nearest->at, step_)));
 }
 
 GridSearch::Found GridSearch::find(glm::dvec2 lat_lon_deg, glm::dvec2 start) const {
+  if (cells_) return find(lat_lon_deg);
   const glm::dvec3 wanted = unit_vector(lat_lon_deg);
   const Found found = polish(wanted, inside(start));
   return found.off_cells > 0 ? find(lat_lon_deg) : found;

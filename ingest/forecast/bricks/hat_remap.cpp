@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "forecast/bricks/cell_overlap.h"
 #include "forecast/bricks/vertical_hats.h"
+#include "geo/place.h"
 #include "pyramid/touching.h"
 
 #if defined(NEPHO_MUTANT_HALF)
@@ -46,11 +48,55 @@ int parts_of_walls(const HorizontalGrid& grid) {
   for (int j = 0; j < grid.ny(); j += step_y)
     for (int i = 0; i < grid.nx(); i += step_x) {
       const glm::dvec2 here = grid.lat_lon_deg(i, j);
-      longest_deg = std::max({longest_deg, angle_deg(here, grid.lat_lon_deg(i + 1, j)),
-                              angle_deg(here, grid.lat_lon_deg(i, j + 1))});
+      for (const glm::dvec2& next : {grid.lat_lon_deg(i + 1, j), grid.lat_lon_deg(i, j + 1)})
+        if (!std::isnan(here.x) && !std::isnan(next.x))
+          longest_deg = std::max(longest_deg, angle_deg(here, next));
     }
   return std::clamp(int(std::ceil(longest_deg / kSide_deg)), 1, 30);
 }
+
+// Each polygon as triangles about its first corner, each of these in 4^halvings of great circles:
+// walls that two cells share are cut alike.
+struct PolygonCells {
+  const CellPolygons& polygons;
+  const CellOverlap& overlap;
+  const Ellipsoid& body;
+  double height_m;
+  int halvings;
+
+  static int halvings_of(const CellPolygons& polygons) {
+    double longest_deg = 0;
+    for (std::size_t cell = 0; cell + 1 < polygons.first.size(); ++cell)
+      for (std::uint32_t at = polygons.first[cell] + 1; at < polygons.first[cell + 1]; ++at)
+        longest_deg =
+            std::max(longest_deg, angle_deg(polygons.corner_deg[at - 1], polygons.corner_deg[at]));
+    return std::clamp(int(std::ceil(std::log2(longest_deg / kSide_deg))), 0, 5);
+  }
+  void add(std::size_t cell, std::vector<HatShare>& shares) const {
+    const auto corner = [&](std::uint32_t at) { return unit_vector(polygons.corner_deg[at]); };
+    const std::uint32_t begin = polygons.first[cell], end = polygons.first[cell + 1];
+    for (std::uint32_t at = begin + 2; at < end; ++at)
+      add_triangle(corner(begin), corner(at - 1), corner(at), halvings, shares);
+  }
+
+ private:
+  void add_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, int more,
+                    std::vector<HatShare>& shares) const {
+    if (more > 0) {
+      const glm::dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c),
+                       ca = glm::normalize(c + a);
+      add_triangle(a, ab, ca, more - 1, shares);
+      add_triangle(ab, b, bc, more - 1, shares);
+      add_triangle(ca, bc, c, more - 1, shares);
+      add_triangle(ab, bc, ca, more - 1, shares);
+      return;
+    }
+    const auto scaled = [&](const glm::dvec3& u) {
+      return scaled_direction(body, lat_lon_deg_of(u), height_m);
+    };
+    overlap.add({scaled(a), scaled(b), scaled(c), scaled(c)}, shares);
+  }
+};
 
 void add_cell(const CellOverlap& overlap, const Ellipsoid& body, const HorizontalGrid& grid, int x,
               int y, int parts, double height_m, std::vector<HatShare>& shares) {
@@ -121,22 +167,33 @@ void HatRemap::remap_columns(const HorizontalGrid& grid, const ForecastColumns& 
 
 void HatRemap::overlap_cells(const HorizontalGrid& grid, const ForecastColumns& columns) {
   const CellOverlap overlap(*chart_, cells_);
-  const int parts = parts_of_walls(grid);
-  std::vector<std::vector<Entry>> of_row(std::size_t(columns.ny));
-  tbb::parallel_for(0, columns.ny, [&](int y) {
+  const CellPolygons* polygons = grid.polygons();
+  const int parts = polygons ? 1 : parts_of_walls(grid);
+  std::optional<PolygonCells> shapes;
+  if (polygons)
+    shapes.emplace(PolygonCells{*polygons, overlap, chart_->body(), reference_height_m_,
+                                PolygonCells::halvings_of(*polygons)});
+  constexpr std::size_t kBlock = 256;  // cells
+  std::vector<std::vector<Entry>> of_block((ranges_.size() + kBlock - 1) / kBlock);
+  tbb::parallel_for(std::size_t{0}, of_block.size(), [&](std::size_t block) {
     std::vector<HatShare> shares;
-    for (int x = 0; x < columns.nx; ++x) {
-      const auto cell = std::uint32_t(y) * std::uint32_t(columns.nx) + std::uint32_t(x);
+    const std::size_t end = std::min(ranges_.size(), (block + 1) * kBlock);
+    for (std::size_t cell = block * kBlock; cell < end; ++cell) {
       if (ranges_[cell].count == 0) continue;
       shares.clear();
-      add_cell(overlap, chart_->body(), grid, x, y, parts, reference_height_m_, shares);
+      const std::size_t nx = std::size_t(columns.nx);
+      if (shapes)
+        shapes->add(cell, shares);
+      else
+        add_cell(overlap, chart_->body(), grid, int(cell % nx), int(cell / nx), parts,
+                 reference_height_m_, shares);
       for (const HatShare& share : shares)
         if (share.solid_angle_sr > 0)
-          of_row[std::size_t(y)].push_back({share.column, cell, share.solid_angle_sr});
+          of_block[block].push_back({share.column, std::uint32_t(cell), share.solid_angle_sr});
     }
   });
   std::vector<Entry> entries;
-  for (std::vector<Entry>& some : of_row) {
+  for (std::vector<Entry>& some : of_block) {
     entries.insert(entries.end(), some.begin(), some.end());
     some = {};
   }

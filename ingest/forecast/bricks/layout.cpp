@@ -23,13 +23,22 @@ struct CellSize {
 std::vector<CellSize> some_cells(const HorizontalGrid& grid) {
   const double radius_m = Ellipsoid::wgs84().equatorial_m;
   std::vector<CellSize> sizes;
+  if (const CellPolygons* polygons = grid.polygons()) {
+    const std::size_t cells = polygons->first.size() - 1,
+                      step = std::max<std::size_t>(1, cells / 1024);
+    for (std::size_t cell = 0; cell < cells; cell += step) {
+      const double width_m = radius_m * polygon_width_rad(*polygons, cell);
+      sizes.push_back({width_m, width_m * width_m});
+    }
+    return sizes;
+  }
   const int step_x = std::max(1, grid.nx() / 32), step_y = std::max(1, grid.ny() / 32);
   for (int j = 0; j < grid.ny(); j += step_y)
     for (int i = 0; i < grid.nx(); i += step_x) {
       const auto at = [&](double x, double y) { return unit_vector(grid.lat_lon_deg(x, y)); };
       const double x_m = radius_m * glm::length(at(i + 1, j + 0.5) - at(i, j + 0.5));
       const double y_m = radius_m * glm::length(at(i + 0.5, j + 1) - at(i + 0.5, j));
-      sizes.push_back({std::min(x_m, y_m), x_m * y_m});
+      if (!std::isnan(x_m * y_m)) sizes.push_back({std::min(x_m, y_m), x_m * y_m});
     }
   return sizes;
 }

@@ -43,9 +43,10 @@ struct Piece {
   }
   bool has(const std::vector<float>& values) const { return values.size() == cells(); }
 
-  // Bilinear between cell centres.
+  // Bilinear between cell centres; of polygons the cell's own.
   float value(const std::vector<float>& values, glm::dvec2 at) const {
     const HorizontalGrid& grid = search.grid();
+    if (grid.polygons()) return values[std::size_t(at.x)];
     const double x = std::floor(at.x - 0.5), y = std::floor(at.y - 0.5);
     double sum = 0;
     for (int corner = 0; corner < 4; ++corner) {
@@ -92,23 +93,34 @@ void frame_region(SurfaceMap& map, const std::vector<Piece>& pieces, const Ellip
     return scaled_direction(body, grid.lat_lon_deg(x, y), 0);
   };
   const HorizontalGrid& first = pieces.front().search.grid();
-  const glm::dvec2 half = {first.nx() / 2.0, first.ny() / 2.0};
+  const glm::dvec2 half = pieces.front().search.middle();
   const glm::dvec3 centre = at(first, half.x, half.y);
-  const glm::dvec3 along = at(first, half.x + std::min(0.5, half.x / 2), half.y) - centre;
+  const glm::dvec3 along = first.polygons()
+                               ? glm::dvec3(-centre.y, centre.x, 1e-9)
+                               : at(first, half.x + std::min(0.5, half.x / 2), half.y) - centre;
   const glm::dvec3 east = glm::normalize(along - glm::dot(along, centre) * centre);
   map.axes = {centre, east, glm::cross(centre, east)};
   glm::dvec2 low(1e9), high(-1e9);
+  const auto include = [&](const glm::dvec3& u) {
+    if (std::isnan(u.x)) return;
+    low = glm::min(low, angles(map.axes, u));
+    high = glm::max(high, angles(map.axes, u));
+  };
   constexpr int kPoints = 64;
-  for (const Piece& piece : pieces)
+  for (const Piece& piece : pieces) {
+    if (const CellPolygons* polygons = piece.search.grid().polygons())
+      for (const glm::dvec2& corner : polygons->corner_deg)
+        include(scaled_direction(body, corner, 0));
     for (int n = 0; n <= kPoints; ++n) {
       const HorizontalGrid& grid = piece.search.grid();
       const double nx = grid.nx(), ny = grid.ny(), x = nx * n / kPoints, y = ny * n / kPoints;
-      for (const glm::dvec3& u :
-           {at(grid, x, 0), at(grid, x, ny), at(grid, 0, y), at(grid, nx, y)}) {
-        low = glm::min(low, angles(map.axes, u));
-        high = glm::max(high, angles(map.axes, u));
-      }
+      for (const glm::dvec3& u : {at(grid, x, 0), at(grid, x, ny), at(grid, 0, y), at(grid, nx, y)})
+        include(u);
+      // A disc within the grid touches its edges nowhere.
+      if (std::isnan(at(grid, x, 0).x))
+        for (int row = 0; row <= kPoints; ++row) include(at(grid, x, ny * row / kPoints));
     }
+  }
   map.low_rad = low;
   map.step_rad = high - low;
 }

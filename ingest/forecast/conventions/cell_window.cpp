@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "forecast/conventions/unstructured.h"
 
 namespace nepho::forecast {
 namespace {
@@ -24,11 +25,13 @@ struct Extent {
 struct CellExtent {
   Extent latitude_deg, longitude_deg;
 };
-CellExtent extent_of(const std::array<glm::dvec2, 4>& corner) {
+CellExtent extent_of(std::span<const glm::dvec2> corner) {
+  for (const glm::dvec2& place : corner)
+    if (std::isnan(place.x)) return {{NAN, NAN}, {NAN, NAN}};
   CellExtent e{{corner[0].x, corner[0].x}, {corner[0].y, corner[0].y}};
   double longitude = corner[0].y, turned = 0;
-  for (std::size_t n = 1; n <= 4; ++n) {
-    const glm::dvec2& here = corner[n % 4];
+  for (std::size_t n = 1; n <= corner.size(); ++n) {
+    const glm::dvec2& here = corner[n % corner.size()];
     const double step = std::remainder(here.y - longitude, 360.0);
     longitude += step;
     turned += step;
@@ -51,6 +54,7 @@ CellExtent extent_of(const std::array<glm::dvec2, 4>& corner) {
 }
 
 bool overlap(const CellExtent& cell, const Region& region) {
+  if (std::isnan(cell.latitude_deg.low + cell.longitude_deg.low)) return false;
   if (!(cell.latitude_deg.low < region.north_deg && cell.latitude_deg.high > region.south_deg))
     return false;
   // The cell turned to the first place that ends east of the region's western edge.
@@ -59,6 +63,14 @@ bool overlap(const CellExtent& cell, const Region& region) {
 }
 
 void mark(const HorizontalGrid& grid, const Region& region, Marks& marks) {
+  if (const CellPolygons* polygons = grid.polygons()) {
+    for (std::size_t cell = 0; cell + 1 < polygons->first.size(); ++cell)
+      if (overlap(extent_of({&polygons->corner_deg[polygons->first[cell]],
+                             &polygons->corner_deg[0] + polygons->first[cell + 1]}),
+                  region))
+        marks.rows[0] = marks.columns[cell] = 1;
+    return;
+  }
   const auto nx = std::size_t(grid.nx());
   const auto row_of = [&](int y) {
     std::vector<glm::dvec2> row;
@@ -69,7 +81,7 @@ void mark(const HorizontalGrid& grid, const Region& region, Marks& marks) {
   for (int y = 0; y < grid.ny(); ++y, low = std::move(high)) {
     high = row_of(y + 1);
     for (std::size_t x = 0; x < nx; ++x)
-      if (overlap(extent_of({low[x], low[x + 1], high[x + 1], high[x]}), region))
+      if (overlap(extent_of(std::array{low[x], low[x + 1], high[x + 1], high[x]}), region))
         marks.rows[std::size_t(y)] = marks.columns[x] = 1;
   }
 }
@@ -205,6 +217,7 @@ CellWindow window_of(std::span<const std::shared_ptr<const HorizontalGrid>> grid
 
 std::shared_ptr<const HorizontalGrid> windowed(std::shared_ptr<const HorizontalGrid> grid,
                                                const CellWindow& window) {
+  if (grid->polygons()) return some_polygons(*grid, window.x0, window.nx);
   return std::make_shared<WindowedGrid>(std::move(grid), window);
 }
 

@@ -13,6 +13,7 @@
 #include "forecast/conventions/grid_mapping.h"
 #include "forecast/conventions/horizontal.h"
 #include "forecast/conventions/model.h"
+#include "forecast/conventions/unstructured.h"
 #include "forecast/conventions/vertical.h"
 #include "forecast/files/file_time.h"
 #include "forecast/water/air.h"
@@ -29,6 +30,7 @@ struct CfFile {
   Vertical vertical;
   std::shared_ptr<const HorizontalGrid> grid;
   const FileVariable *temperature = nullptr, *vapour = nullptr, *terrain = nullptr, *land = nullptr;
+  UnitOf terrain_unit;  // to m: of a height, or of a geopotential
   Vapour vapour_is = Vapour::kNone;
   double pressure_factor = 1;
   std::optional<std::vector<float>> standard_Pa;  // of heights, where no pressure is known
@@ -60,6 +62,8 @@ Air CfFile::air(std::size_t time) const {
   } else if (vertical.pressure) {
     air.pressure_Pa = field(*vertical.pressure, time);
     for (float& p : air.pressure_Pa) p *= float(pressure_factor);
+  } else if (vertical.pressure_Pa) {
+    air.pressure_Pa = vertical.pressure_Pa(time);
   } else if (standard_Pa) {
     air.pressure_Pa = *standard_Pa;
   }
@@ -77,7 +81,7 @@ Air CfFile::air(std::size_t time) const {
 
 std::vector<float> CfFile::terrain_m(std::size_t time) const {
   std::vector<float> height = reader->surface(*terrain, time);
-  scale(height, unit_of(*terrain, kLength));
+  scale(height, terrain_unit);
   return height;
 }
 
@@ -138,6 +142,17 @@ void CfFile::find_ground() {
   terrain = find_named(*file, names::kTerrain, [&](const FileVariable& v) {
     return reader->is_surface(v) && unit_of(v, kLength).fits;
   });
+  if (terrain) {
+    terrain_unit = unit_of(*terrain, kLength);
+  } else {
+    terrain = find_named(*file, names::kSurfaceGeopotential, [&](const FileVariable& v) {
+      return reader->is_surface(v) && unit_of(v, kGeopotentialUnit).fits;
+    });
+    if (terrain) {
+      terrain_unit = unit_of(*terrain, kGeopotentialUnit);
+      terrain_unit.factor /= constants::kStandardGravity_m_per_s2;
+    }
+  }
   land = find_named(*file, names::kLandFraction,
                     [&](const FileVariable& v) { return reader->is_surface(v); });
 }
@@ -165,7 +180,7 @@ void CfFile::choose_pressure(Model& model) {
   if (vertical.pressure) pressure_factor = unit_of(*vertical.pressure, kPressure).factor;
   const bool per_volume = std::ranges::all_of(
       model.water, [](const WaterVariable& w) { return w.basis == Basis::kVolume; });
-  if (vertical.level_pressure_Pa.empty() && !vertical.pressure) {
+  if (vertical.level_pressure_Pa.empty() && !vertical.pressure && !vertical.pressure_Pa) {
     make_standard_air();
     if (!per_volume)
       model.assumptions.push_back(
@@ -219,7 +234,8 @@ void check_dimensions(const CfFile& cf, const FileVariable& water) {
                    "choose one index first, for example with ncks -d " + cf.file->name(d) + ",0"});
 }
 
-Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& region) {
+Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& region,
+               const DataFile* grid_file) {
   const DataFile& file = *cf->file;
   const FileVariable& first = *first_water(file);
   cf->roles = dimension_roles(file, first);
@@ -232,7 +248,9 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   reader.time = cf->roles.time;
   reader.y = cf->roles.y;
   reader.x = cf->roles.x;
-  cf->grid = cf_grid(file, cf->roles, reader, first, model.assumptions);
+  cf->grid = cf->roles.cells >= 0
+                 ? unstructured_grid(file, grid_file, first, cf->roles.cells, model.assumptions)
+                 : cf_grid(file, cf->roles, reader, first, model.assumptions);
   reader.nx = cf->grid->nx();
   reader.ny = cf->grid->ny();
   if (region) cf->restrict_to(*region, model);
@@ -246,6 +264,7 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   // `vertical` is part of the CfFile that these ask: a shared pointer would never let go.
   const CfFile* self = cf.get();
   VerticalRequest request{cf->reader,
+                          &first,
                           cf->roles.z,
                           cf->temperature,
                           [self](std::size_t time) { return self->air(time); },
@@ -259,6 +278,7 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   say(model.assumptions, cf->vertical.assumptions);
   say(model.facts, cf->vertical.facts);
   model.heights_change = cf->vertical.heights_change;
+  model.heights_on_ellipsoid = cf->vertical.on_ellipsoid;
   model.field = [cf](const FileVariable& v, std::size_t time) { return cf->field(v, time); };
   model.grid = [cf](std::size_t) { return cf->grid; };
   model.air = [cf](std::size_t time) { return cf->air(time); };
@@ -277,7 +297,9 @@ std::unique_ptr<Forecast> open_cf(std::shared_ptr<const DataFile> file,
                                   const OpenRequest& request) {
   auto cf = std::make_shared<CfFile>();
   cf->file = std::move(file);
-  return make_forecast(model_of(cf, request.region), request.force);
+  std::shared_ptr<const DataFile> grid_file;
+  if (!request.grid_file.empty()) grid_file = request.open_file(request.grid_file);
+  return make_forecast(model_of(cf, request.region, grid_file.get()), request.force);
 }
 
 }  // namespace

@@ -42,10 +42,12 @@ Role of_coordinate(const FileVariable& axis) {
   const std::string letter = axis.text("axis");
   if (is_time_unit(unit) || letter == "T" || standard == "time") return Role::kTime;
   if (is_north(unit) || letter == "Y" ||
-      any_of(standard, {"latitude", "grid_latitude", "projection_y_coordinate"}))
+      any_of(standard, {"latitude", "grid_latitude", "projection_y_coordinate",
+                        "projection_y_angular_coordinate"}))
     return Role::kY;
   if (is_east(unit) || letter == "X" ||
-      any_of(standard, {"longitude", "grid_longitude", "projection_x_coordinate"}))
+      any_of(standard, {"longitude", "grid_longitude", "projection_x_coordinate",
+                        "projection_x_angular_coordinate"}))
     return Role::kX;
   if (letter == "Z" || !axis.text("positive").empty() || unit_of(axis, kPressure).fits ||
       any_of(standard, {"height", "altitude", "air_pressure", "model_level_number"}) ||
@@ -116,10 +118,10 @@ DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variabl
   };
   std::vector<int> left;
   for (const int d : variable.dimensions) {
-    if (unstructured(file, variable, d))
-      throw Error({"triangular grids are not read yet", file.where(variable),
-                   "a grid of rows and columns", file.shape_text(variable),
-                   "interpolate it first, for example with cdo remapcon,r720x360"});
+    if (roles.cells < 0 && unstructured(file, variable, d)) {
+      roles.cells = roles.x = d;
+      continue;
+    }
     const FileVariable* axis = file.find(file.name(d));
     const bool coordinate = axis && axis->dimensions == std::vector<int>{d};
     if (!coordinate || !give(of_coordinate(*axis), d)) left.push_back(d);
@@ -145,7 +147,7 @@ DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variabl
     throw Error({"the cloud water has no horizontal grid", file.where(variable),
                  "dimensions of latitude and longitude, or y and x", file.shape_text(variable),
                  "profiles over time are no volume"});
-  if (roles.z < 0 || roles.y < 0 || roles.x < 0)
+  if (roles.z < 0 || (roles.y < 0 && roles.cells < 0) || roles.x < 0)
     throw Error({"the cloud water's dimensions are not understood", file.where(variable),
                  "level, y and x, by units, axis, standard_name or usual names",
                  file.shape_text(variable),

@@ -9,11 +9,13 @@ namespace nepho::forecast {
 // two-dimensional latitudes and longitudes, then by name.
 struct DimensionRoles {
   int time = -1, z = -1, y = -1, x = -1;
+  int cells = -1;  // x, where cells are in a row
   // Fields of latitude and longitude over y and x, where there are any.
   const FileVariable *latitude = nullptr, *longitude = nullptr;
 };
 
-// Throws Error where the variable has no level, no horizontal grid, or an unstructured one.
+// Cells in a row (triangles) have x only. Throws Error where the variable has no level, or no
+// horizontal grid.
 DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variable);
 
 }  // namespace nepho::forecast

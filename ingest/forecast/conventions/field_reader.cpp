@@ -13,14 +13,14 @@ bool has(const FileVariable& variable, int dimension) {
 }  // namespace
 
 bool FieldReader::is_field(const FileVariable& variable, int z) const {
-  return variable.numeric && has(variable, z) && has(variable, y) && has(variable, x) &&
+  return variable.numeric && has(variable, z) && (y < 0 || has(variable, y)) && has(variable, x) &&
          std::ranges::all_of(variable.dimensions, [&](int d) {
            return d == time || d == z || d == y || d == x || file->size(d) == 1;
          });
 }
 
 bool FieldReader::is_surface(const FileVariable& variable) const {
-  return variable.numeric && has(variable, y) && has(variable, x) &&
+  return variable.numeric && (y < 0 || has(variable, y)) && has(variable, x) &&
          std::ranges::all_of(variable.dimensions, [&](int d) {
            return d == time || d == y || d == x || file->size(d) == 1;
          });
@@ -66,7 +66,8 @@ std::vector<float> FieldReader::columns(const FileVariable& variable, int z, boo
     step *= counts[d];
   }
   const std::size_t row = std::size_t(x_count), plane = row * std::size_t(ny);
-  const bool in_order = stride[2] == 1 && stride[1] == row && stride[0] == (z < 0 ? 0 : plane);
+  const bool in_order =
+      stride[2] == 1 && (y < 0 || stride[1] == row) && stride[0] == (z < 0 ? 0 : plane);
   if (in_order && (!from_top || count == 1)) return values;
   std::vector<float> ordered(values.size());
   for (int k = 0; k < count; ++k) {

@@ -12,7 +12,7 @@ namespace nepho::forecast {
 // [k][j][i], k from the ground up, j and i in the file's own direction.
 struct FieldReader {
   std::shared_ptr<const DataFile> file;
-  int time = -1, y = -1, x = -1;  // dimensions; time may be absent
+  int time = -1, y = -1, x = -1;  // dimensions; without time, and without y (cells in a row): -1
   int nx = 0, ny = 0;             // columns used: nx leaves out a repeated column of a whole turn
   int x0 = 0, y0 = 0;             // the first of them
   int turn = 0;                   // columns after which the first follows; 0: never

@@ -1,10 +1,13 @@
 #include "forecast/conventions/grid_mapping.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "core/error.h"
+#include "forecast/conventions/cell_bounds.h"
+#include "forecast/conventions/cf_map.h"
 #include "forecast/conventions/horizontal.h"
 #include "forecast/conventions/names.h"
 #include "forecast/conventions/vertical.h"
@@ -31,76 +34,108 @@ std::optional<std::vector<double>> degrees(const DataFile& file, const FileVaria
   return {};
 }
 
-// One number of the mapping, or the first or last of a pair.
-double attribute(const FileVariable& mapping, const char* name, double otherwise,
-                 bool last = false) {
-  const FileAttribute* found = mapping.attribute(name);
-  if (!found || found->numbers.empty()) return otherwise;
-  return last ? found->numbers.back() : found->numbers.front();
+// Around 0.
+std::vector<double> centred_m(const DataFile& file, const FileVariable& axis) {
+  std::vector<double> values = file.read_all(axis);
+  const double middle = 0.5 * (values.front() + values.back());
+  for (double& value : values) value = (value - middle) * unit_of(axis, kLength).factor;
+  return values;
 }
 
-std::optional<MapKind> kind_of(const FileVariable& mapping) {
-  const std::string name = mapping.text("grid_mapping_name");
-  if (name == "lambert_conformal_conic") return MapKind::kLambertConformal;
-  if (name == "mercator") return MapKind::kMercator;
-  if (name == "polar_stereographic") return MapKind::kPolarStereographic;
-  if (name == "transverse_mercator") return MapKind::kTransverseMercator;
-  if (name == "rotated_latitude_longitude") return MapKind::kRotated;
-  // Written before there was a name for it.
-  if (name.empty() && mapping.attribute("grid_north_pole_latitude")) return MapKind::kRotated;
-  return {};
+struct Fields {
+  std::vector<double> latitude_deg, longitude_deg;  // of centres
+  double factor;                                    // to degrees
+};
+
+Fields fields_of(const DataFile& file, const DimensionRoles& roles, FieldReader reader) {
+  reader.nx = int(file.size(roles.x));
+  reader.ny = int(file.size(roles.y));
+  const UnitOf unit = unit_of(*roles.latitude, kAngle);
+  Fields fields{{}, {}, unit.fits ? unit.factor / kDegree : 1};
+  const auto read = [&](const FileVariable& v) {
+    const std::vector<float> values = reader.surface(v, 0);
+    std::vector<double> result(values.begin(), values.end());
+    for (double& value : result) value *= fields.factor;
+    return result;
+  };
+  fields.latitude_deg = read(*roles.latitude);
+  fields.longitude_deg = read(*roles.longitude);
+  return fields;
 }
 
-MapSpec spec_of(const FileVariable& mapping, MapKind kind) {
-  MapSpec spec;
-  spec.kind = kind;
-  const double sphere = attribute(mapping, "earth_radius", 6371229);
-  spec.equatorial_m = attribute(mapping, "semi_major_axis", sphere);
-  const double flattening = attribute(mapping, "inverse_flattening", 0);
-  spec.polar_m =
-      attribute(mapping, "semi_minor_axis",
-                flattening > 0 ? spec.equatorial_m * (1 - 1 / flattening) : spec.equatorial_m);
-  spec.origin_latitude_deg = attribute(mapping, "latitude_of_projection_origin", 0);
-  spec.true_latitude1_deg =
-      attribute(mapping, "standard_parallel",
-                kind == MapKind::kPolarStereographic ? spec.origin_latitude_deg : 0);
-  spec.true_latitude2_deg = attribute(mapping, "standard_parallel", 0, true);
-  if (kind == MapKind::kMercator) spec.origin_latitude_deg = 0;
-  for (const char* name : {"longitude_of_projection_origin", "longitude_of_central_meridian",
-                           "straight_vertical_longitude_from_pole"})
-    spec.central_longitude_deg = attribute(mapping, name, spec.central_longitude_deg);
-  spec.scale = attribute(mapping, "scale_factor_at_central_meridian", 1);
-  spec.false_easting_m = attribute(mapping, "false_easting", 0);
-  spec.false_northing_m = attribute(mapping, "false_northing", 0);
-  spec.pole_latitude_deg = attribute(mapping, "grid_north_pole_latitude", 90);
-  spec.pole_longitude_deg = attribute(mapping, "grid_north_pole_longitude", 180);
-  return spec;
+std::unique_ptr<HorizontalGrid> grid_of_fields(const DataFile& file, const DimensionRoles& roles,
+                                               Fields fields) {
+  const int nx = int(file.size(roles.x)), ny = int(file.size(roles.y));
+  const std::string where =
+      file.path() + " [" + roles.latitude->name + ", " + roles.longitude->name + "]";
+  const auto row = std::size_t(nx);
+  // Axes written out in full: rows of one latitude and columns of one longitude. They go around.
+  bool axes = true;
+  for (std::size_t n = 0; n < fields.latitude_deg.size() && axes; ++n)
+    axes = fields.latitude_deg[n] == fields.latitude_deg[n - n % row] &&
+           fields.longitude_deg[n] == fields.longitude_deg[n % row];
+  if (axes) {
+    std::vector<double> latitude;
+    for (std::size_t n = 0; n < fields.latitude_deg.size(); n += row)
+      latitude.push_back(fields.latitude_deg[n]);
+    fields.longitude_deg.resize(row);
+    return axes_grid(std::move(latitude), std::move(fields.longitude_deg), where);
+  }
+  if (auto corners = cell_corners(file, *roles.latitude, *roles.longitude, nx, ny, fields.factor))
+    return corners_grid(nx, ny, std::move(corners->latitude), std::move(corners->longitude), where);
+  return points_grid(nx, ny, std::move(fields.latitude_deg), std::move(fields.longitude_deg),
+                     where);
+}
+
+// Largest angle between the map's centres and the file's, over that of a cell's side.
+double cells_apart(const HorizontalGrid& grid, const Fields& fields) {
+  double worst = 0;
+  const auto apart = [](glm::dvec2 a, glm::dvec2 b) {
+    return std::hypot(a.x - b.x, std::remainder(a.y - b.y, 360.0) * std::cos(a.x * kDegree));
+  };
+  const int nx = grid.nx(), ny = grid.ny();
+  for (int j = 0; j < ny; j += std::max(1, ny / 8))
+    for (int i = 0; i < nx; i += std::max(1, nx / 8)) {
+      const auto n = std::size_t(j) * std::size_t(nx) + std::size_t(i);
+      const glm::dvec2 here = grid.lat_lon_deg(i + 0.5, j + 0.5);
+      const double side = apart(grid.lat_lon_deg(i + 1, j + 0.5), grid.lat_lon_deg(i, j + 0.5));
+      const double gap = apart(here, {fields.latitude_deg[n], fields.longitude_deg[n]}) / side;
+      if (gap > worst) worst = gap;  // not where either has no place
+    }
+  return worst;
+}
+
+// A map that lies elsewhere than the file's own places is a mistake in its attributes.
+constexpr double kMapsPlace_cells = 0.25;
+
+// The coordinate of a dimension: of its name, or else of one that says that it is one.
+const FileVariable* axis_of(const DataFile& file, int dimension) {
+  const auto along = [&](const FileVariable& v) {
+    return v.numeric && v.dimensions == std::vector<int>{dimension};
+  };
+  if (const FileVariable* axis = file.find(file.name(dimension)); axis && along(*axis)) return axis;
+  static const std::vector<std::string> kNames = {"projection_x_coordinate",
+                                                  "projection_y_coordinate",
+                                                  "projection_x_angular_coordinate",
+                                                  "projection_y_angular_coordinate",
+                                                  "grid_longitude",
+                                                  "grid_latitude",
+                                                  "longitude",
+                                                  "latitude"};
+  const auto at = std::ranges::find_if(file.variables(), [&](const FileVariable& v) {
+    return along(v) && std::ranges::find(kNames, v.text("standard_name")) != kNames.end();
+  });
+  return at == file.variables().end() ? nullptr : &*at;
 }
 
 const FileVariable& need_axis(const DataFile& file, int dimension, const FileVariable& water) {
-  const FileVariable* axis = file.find(file.name(dimension));
-  if (!axis || axis->dimensions != std::vector<int>{dimension} || !axis->numeric)
+  const FileVariable* axis = axis_of(file, dimension);
+  if (!axis)
     throw Error({"the grid has no coordinates", file.where(water),
                  "a variable " + file.name(dimension) + "(" + file.name(dimension) +
                      "), or fields of latitude and longitude",
                  "neither", ""});
   return *axis;
-}
-
-// Along a map, in its unit: m, or degrees where it is rotated.
-std::vector<double> map_axis(const DataFile& file, const FileVariable& axis, bool rotated) {
-  std::vector<double> values = file.read_all(axis);
-  const UnitOf unit = unit_of(axis, rotated ? kAngle : kLength);
-  if (!unit.fits)
-    throw Error({"an axis of the grid has no usable units", file.where(axis),
-                 rotated ? "degrees" : "m or km", "\"" + axis.text("units") + "\"", ""});
-  for (double& value : values) value *= rotated ? unit.factor / kDegree : unit.factor;
-  return values;
-}
-
-void centre(std::vector<double>& values) {
-  const double middle = 0.5 * (values.front() + values.back());
-  for (double& value : values) value -= middle;
 }
 
 }  // namespace
@@ -110,49 +145,50 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const Dimens
                                               std::vector<std::string>& assumptions) {
   const std::string where =
       file.path() + " [" + file.name(roles.y) + ", " + file.name(roles.x) + "]";
-  if (roles.latitude && file.size(roles.x) > 1 && file.size(roles.y) > 1) {
-    FieldReader whole = reader;
-    whole.nx = int(file.size(roles.x));
-    whole.ny = int(file.size(roles.y));
-    const auto field = [&](const FileVariable& v) {
-      const std::vector<float> values = whole.surface(v, 0);
-      const UnitOf unit = unit_of(v, kAngle);
-      std::vector<double> result(values.begin(), values.end());
-      if (unit.fits)
-        for (double& value : result) value *= unit.factor / kDegree;
-      return result;
-    };
-    return points_grid(
-        whole.nx, whole.ny, field(*roles.latitude), field(*roles.longitude),
-        file.path() + " [" + roles.latitude->name + ", " + roles.longitude->name + "]");
+  const bool has_fields = roles.latitude && file.size(roles.x) > 1 && file.size(roles.y) > 1;
+  std::optional<Fields> fields;
+  if (has_fields) fields = fields_of(file, roles, reader);
+  const FileVariable* mapping = map_of(file, water);
+  if (mapping && (!has_fields || (axis_of(file, roles.y) && axis_of(file, roles.x)))) {
+    std::vector<std::string> said;
+    std::shared_ptr<const HorizontalGrid> grid;
+    try {
+      grid = cf_map_grid(file, *mapping, need_axis(file, roles.x, water),
+                         need_axis(file, roles.y, water), said);
+    } catch (const Error&) {
+      if (!has_fields) throw;
+    }
+    if (grid && (!has_fields || cells_apart(*grid, *fields) < kMapsPlace_cells)) {
+      assumptions.insert(assumptions.end(), said.begin(), said.end());
+      return grid;
+    }
+    assumptions.push_back("The map " + mapping->name +
+                          (grid ? " does not agree with" : " is not known: the cells lie by") +
+                          (grid ? " the file's latitudes and longitudes, which are taken."
+                                : " the file's latitudes and longitudes."));
   }
+  if (has_fields) return grid_of_fields(file, roles, std::move(*fields));
   const FileVariable& y = need_axis(file, roles.y, water);
   const FileVariable& x = need_axis(file, roles.x, water);
-  if (const FileVariable* mapping = file.find(water.text("grid_mapping"));
-      mapping && mapping->text("grid_mapping_name") != "latitude_longitude") {
-    const auto kind = kind_of(*mapping);
-    if (!kind)
-      throw Error({"this map projection is not known", file.where(*mapping),
-                   "latitude_longitude, lambert_conformal_conic, mercator, polar_stereographic, "
-                   "transverse_mercator or rotated_latitude_longitude",
-                   "\"" + mapping->text("grid_mapping_name") + "\"",
-                   "fields of latitude and longitude would do instead"});
-    const bool rotated = *kind == MapKind::kRotated;
-    return map_grid(map_axis(file, x, rotated), map_axis(file, y, rotated),
-                    MapProjection(spec_of(*mapping, *kind)));
-  }
   const auto latitude = degrees(file, y, names::kLatitude);
-  const auto longitude = degrees(file, x, names::kLongitude);
-  if (latitude && longitude) return axes_grid(*latitude, *longitude, where);
+  auto longitude = degrees(file, x, names::kLongitude);
+  if (latitude && longitude) {
+    unwrap_deg(*longitude);
+    const auto factor = [](const FileVariable& axis) {
+      const UnitOf unit = unit_of(axis, kAngle);
+      return unit.fits ? unit.factor / kDegree : 1;
+    };
+    return axes_grid(*latitude, *longitude, where,
+                     {axis_edges(file, y, *latitude, factor(y), false),
+                      axis_edges(file, x, *longitude, factor(x), true)});
+  }
   if (unit_of(x, kLength).fits && unit_of(y, kLength).fits) {
     assumptions.push_back(kNoPlace);
-    std::vector<double> x_m = map_axis(file, x, false), y_m = map_axis(file, y, false);
-    centre(x_m);
-    centre(y_m);
-    return plane_grid(x_m, y_m);
+    return plane_grid(centred_m(file, x), centred_m(file, y));
   }
   throw Error({"the grid has no place", where, "latitudes and longitudes in degrees, or m of a map",
-               "units \"" + y.text("units") + "\" and \"" + x.text("units") + "\"", ""});
+               "units \"" + y.text("units") + "\" and \"" + x.text("units") + "\"",
+               "name the map in the attribute grid_mapping of " + water.name});
 }
 
 }  // namespace nepho::forecast

@@ -10,11 +10,10 @@
 
 namespace nepho::forecast {
 
-// The horizontal grid of a CF variable: fields of latitude and longitude; axes of latitude and
-// longitude; axes of a map with its grid_mapping (CF 1.11, appendix F: lambert_conformal_conic,
-// mercator, polar_stereographic, transverse_mercator, rotated_latitude_longitude). Axes in metres
-// without a mapping are laid around 0 N 0 E, which is said in `assumptions`. Throws Error on all
-// else.
+// The horizontal grid of a CF variable: axes of a map with its grid_mapping (cf_map.h); fields of
+// latitude and longitude, which also win over a map that lies elsewhere; axes of latitude and
+// longitude. Axes in metres without a mapping are laid around 0 N 0 E. What was assumed is said in
+// `assumptions`. Throws Error on all else.
 std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const DimensionRoles& roles,
                                               const FieldReader& reader, const FileVariable& water,
                                               std::vector<std::string>& assumptions);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "forecast/conventions/cell_bounds.h"
 #include "forecast/conventions/levels.h"
 #include "forecast/water/level_heights.h"
 #include "units/constants.h"
@@ -9,7 +10,26 @@
 namespace nepho::forecast {
 namespace {
 
-constexpr Dimension kGeopotentialUnit{.m = 2, .s = -2};
+constexpr double kBelowGround_m = 30, kMostBelowGround = 0.01;  // of all columns
+constexpr const char* kOverEllipsoid = "height_above_reference_ellipsoid";
+
+// Fields called `height` are above the sea to some models and above the ground to others, whatever
+// CF says: levels below the model's own ground can only be above it.
+void note_datum(Vertical& vertical, Levels& levels) {
+  const std::string standard = levels.variable->text("standard_name");
+  vertical.on_ellipsoid = standard == kOverEllipsoid;
+  if (!levels.request.terrain_m || !(standard.empty() || standard == "height")) return;
+  const std::vector<float> lowest =
+      levels.reader().levels(*levels.variable, levels.z, levels.from_top, 0, 0, 1);
+  const std::vector<double> ground = levels.terrain_m(0);
+  std::size_t below = 0;
+  for (std::size_t n = 0; n < ground.size(); ++n)
+    below += levels.height_m(double(lowest[n])) < ground[n] - kBelowGround_m;
+  levels.above_ground = double(below) > kMostBelowGround * double(ground.size());
+  if (!levels.above_ground) return;
+  vertical.assumptions.push_back("Heights " + levels.variable->name +
+                                 " lie below the ground in places: they are taken as above it.");
+}
 
 // A field of level heights: geometric, geopotential height, or geopotential.
 bool by_level_field(const VerticalRequest& request, Vertical& vertical, const VariableNames& wanted,
@@ -27,12 +47,13 @@ bool by_level_field(const VerticalRequest& request, Vertical& vertical, const Va
   vertical.from_top = levels->from_top;
   vertical.heights_change = varies(*found, reader.time);
   vertical.how = (geopotential ? "geopotential levels " : "levels ") + found->name;
+  if (!geopotential) note_datum(vertical, *levels);
   vertical.interfaces_m = [levels](std::size_t time, const Air*) {
     return levels->of_levels(
         levels->reader().field(*levels->variable, levels->z, levels->from_top, time), time);
   };
   // Two levels at each end are enough for the outermost interfaces.
-  if (levels->nz() >= 4)
+  if (levels->nz() >= 4 && !levels->above_ground)
     vertical.height_range_m = [levels](std::size_t time) {
       const int nz = levels->nz();
       glm::dvec2 range{1e30, -1e30};
@@ -76,15 +97,19 @@ bool by_half_levels(const VerticalRequest& request, Vertical& vertical) {
   levels->from_top = falls(reader, *half, z);
   vertical.from_top = levels->from_top;
   vertical.heights_change = varies(*half, reader.time);
+  vertical.has_interfaces = true;
+  note_datum(vertical, *levels);
   vertical.how = "half levels " + half->name;
   vertical.interfaces_m = [levels](std::size_t time, const Air*) {
     const std::vector<float> field =
         levels->reader().field(*levels->variable, levels->z, levels->from_top, time);
+    const std::vector<double> ground = levels->terrain_m(time);
     const std::size_t cells = levels->cells(), count = std::size_t(levels->nz()) + 1;
     std::vector<float> result(field.size());
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t n = 0; n < cells; ++n)
-        result[n * count + k] = float(levels->height_m(double(field[k * cells + n])));
+        result[n * count + k] =
+            float(levels->height_m(double(field[k * cells + n])) + levels->base_m(ground[n]));
     return levels->checked(std::move(result));
   };
   return true;
@@ -118,18 +143,26 @@ bool by_height_axis(const VerticalRequest& request, Vertical& vertical) {
   auto levels = levels_of(request, *axis, request.z);
   levels->from_top = direction(level, file.where(*axis)) < 0;
   vertical.from_top = levels->from_top;
+  auto walls = axis_bounds(file, *axis, level, sign * unit.factor, false);
   if (vertical.from_top) std::ranges::reverse(level);
-  const bool above_ground = axis->text("standard_name") == "height" && request.terrain_m;
+  if (walls && walls->front() > walls->back()) std::ranges::reverse(*walls);
+  vertical.has_interfaces = walls.has_value();
+  const std::string standard = axis->text("standard_name");
+  vertical.on_ellipsoid = standard == kOverEllipsoid;
+  const bool above_ground = standard == "height" && request.terrain_m;
   vertical.how = std::string("heights ") + (above_ground ? "above ground " : "") + axis->name;
-  if (!above_ground && axis->text("standard_name") != "altitude")
+  if (!above_ground && standard != "altitude" && !vertical.on_ellipsoid)
     vertical.assumptions.push_back("Heights of " + axis->name + " are taken as above sea level.");
-  vertical.interfaces_m = [levels, level, above_ground](std::size_t time, const Air*) {
+  vertical.interfaces_m = [levels, level, walls, above_ground](std::size_t time, const Air*) {
     const std::vector<double> ground = levels->terrain_m(time);
     const std::size_t count = level.size() + 1;
     std::vector<float> result(levels->cells() * count);
     std::vector<double> column = level;
     for (std::size_t n = 0; n < levels->cells(); ++n) {
       const double base = above_ground && std::isfinite(ground[n]) ? ground[n] : 0;
+      for (std::size_t k = 0; walls && k < count; ++k)
+        result[n * count + k] = float((*walls)[k] + base);
+      if (walls) continue;
       for (std::size_t k = 0; k < level.size(); ++k) column[k] = level[k] + base;
       // Nothing of a model lies below its ground, or below the sea where it has none.
       const double floor_m = std::isfinite(ground[n]) ? ground[n] : 0;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "forecast/conventions/cell_bounds.h"
 #include "units/constants.h"
 
 namespace nepho::forecast {
@@ -20,8 +21,10 @@ constexpr double kLatitudeRounding = 1e-3;  // deg beyond a pole that is roundin
   throw Error({"the coordinates of the grid are not usable", where, expected, found, ""});
 }
 
-void check_latitudes(std::vector<double>& latitude_deg, const std::string& where) {
+void check_latitudes(std::vector<double>& latitude_deg, const std::string& where,
+                     bool missing_too = false) {
   for (double& latitude : latitude_deg) {
+    if (missing_too && std::isnan(latitude)) continue;
     if (!(std::abs(latitude) <= 90 + kLatitudeRounding))
       refuse_axis(where, "latitudes from -90 to 90 degrees", std::to_string(latitude));
     latitude = std::clamp(latitude, -90.0, 90.0);
@@ -38,23 +41,15 @@ void check_turn(int nx, int ny, const std::vector<glm::dvec3>& centre, const std
         return centre[std::size_t(j + b) * std::size_t(nx) + std::size_t(i + a)];
       };
       const double turn = glm::dot(glm::cross(at(1, 1) - at(0, 0), at(0, 1) - at(1, 0)), at(0, 0));
+      if (std::isnan(turn)) continue;
       (turn > 0 ? left : turn < 0 ? right : flat) += 1;
     }
   const std::size_t wrong = std::min(left, right) + flat, all = left + right + flat;
+  if (all == 0) refuse_axis(where, "places of cells", "missing values only");
   if (double(wrong) > kMostTurned * double(all))
     refuse_axis(where, "cells that all turn to one side",
                 std::to_string(wrong) + " of " + std::to_string(all) +
                     " that turn to the other, or have no area");
-}
-
-// Half way between centres; half a step beyond both ends. One centre: a cell of one degree.
-std::vector<double> edges_of(const std::vector<double>& centres) {
-  const std::size_t n = centres.size();
-  std::vector<double> edges(n + 1);
-  for (std::size_t i = 1; i < n; ++i) edges[i] = 0.5 * (centres[i - 1] + centres[i]);
-  edges[0] = n > 1 ? centres[0] - 0.5 * (centres[1] - centres[0]) : centres[0] - 0.5;
-  edges[n] = n > 1 ? centres[n - 1] + 0.5 * (centres[n - 1] - centres[n - 2]) : centres[0] + 0.5;
-  return edges;
 }
 
 double between(const std::vector<double>& edges, double at) {
@@ -90,10 +85,17 @@ class AxesGrid : public HorizontalGrid {
   bool around_;
 };
 
+// Nodes that are centres of cells, or their corners.
 class PointsGrid : public HorizontalGrid {
  public:
-  PointsGrid(int nx, int ny, const std::vector<double>& latitude, std::vector<double> longitude)
-      : nx_(nx), ny_(ny), longitude_(std::move(longitude)) {
+  PointsGrid(int nx, int ny, bool corners, const std::vector<double>& latitude,
+             std::vector<double> longitude)
+      : nx_(nx),
+        ny_(ny),
+        row_(corners ? nx + 1 : nx),
+        rows_(corners ? ny + 1 : ny),
+        first_(corners ? 0 : 0.5),
+        longitude_(std::move(longitude)) {
     for (std::size_t n = 0; n < latitude.size(); ++n)
       direction_.emplace_back(std::cos(latitude[n] * kDegree) * std::cos(longitude_[n] * kDegree),
                               std::cos(latitude[n] * kDegree) * std::sin(longitude_[n] * kDegree),
@@ -102,17 +104,16 @@ class PointsGrid : public HorizontalGrid {
   int nx() const override { return nx_; }
   int ny() const override { return ny_; }
   bool around() const override { return false; }
-  const std::vector<glm::dvec3>& directions() const { return direction_; }  // of centres
+  const std::vector<glm::dvec3>& directions() const { return direction_; }  // of nodes
   glm::dvec2 lat_lon_deg(double x, double y) const override {
-    const double u = x - 0.5, v = y - 0.5;  // in centres
-    const double i = std::clamp(std::floor(u), 0.0, nx_ - 2.0);
-    const double j = std::clamp(std::floor(v), 0.0, ny_ - 2.0);
+    const double u = x - first_, v = y - first_;  // in nodes
+    const double i = std::clamp(std::floor(u), 0.0, row_ - 2.0);
+    const double j = std::clamp(std::floor(v), 0.0, rows_ - 2.0);
     const double fx = u - i, fy = v - j;  // beyond [0, 1] outside the outermost centres
-    const std::size_t at = std::size_t(j) * std::size_t(nx_) + std::size_t(i);
+    const std::size_t row = std::size_t(row_), at = std::size_t(j) * row + std::size_t(i);
     const auto mix = [&](const auto& values) {
       const auto low = values[at] * (1 - fx) + values[at + 1] * fx;
-      const auto high =
-          values[at + std::size_t(nx_)] * (1 - fx) + values[at + std::size_t(nx_) + 1] * fx;
+      const auto high = values[at + row] * (1 - fx) + values[at + row + 1] * fx;
       return low * (1 - fy) + high * fy;
     };
     const glm::dvec3 d = mix(direction_);
@@ -122,17 +123,53 @@ class PointsGrid : public HorizontalGrid {
   }
 
  private:
-  int nx_, ny_;
+  int nx_, ny_, row_, rows_;  // cells; nodes
+  double first_;              // node, in cells
   std::vector<glm::dvec3> direction_;
   std::vector<double> longitude_;  // continuous
 };
 
+std::unique_ptr<HorizontalGrid> nodes_grid(int nx, int ny, bool corners,
+                                           std::vector<double> latitude_deg,
+                                           std::vector<double> longitude_deg,
+                                           const std::string& where) {
+  check_latitudes(latitude_deg, where, true);
+  // Along the row, and each row's first from the row before; across what is missing from the last.
+  const std::size_t row = std::size_t(corners ? nx + 1 : nx);
+  double before = 0, first = 0;
+  for (std::size_t n = 0; n < longitude_deg.size(); ++n) {
+    double& here = longitude_deg[n];
+    if (n % row == 0) before = first;
+    if (!std::isfinite(here) || std::isnan(latitude_deg[n])) {
+      here = latitude_deg[n] = NAN;
+      continue;
+    }
+    here -= 360 * std::round((here - before) / 360);
+    before = here;
+    if (n % row == 0) first = here;
+  }
+#ifdef NEPHO_MUTANT_LONGITUDE_180
+  for (double& longitude : longitude_deg) longitude += 180;
+#endif
+  auto grid = std::make_unique<PointsGrid>(nx, ny, corners, latitude_deg, std::move(longitude_deg));
+  check_turn(int(row), corners ? ny + 1 : ny, grid->directions(), where);
+  return grid;
+}
+
 class MapGrid : public HorizontalGrid {
  public:
-  MapGrid(const std::vector<double>& x_m, const std::vector<double>& y_m,
-          const MapProjection& projection)
-      : x_(edges_of(x_m)), y_(edges_of(y_m)), projection_(projection) {
-    centre_deg_ = projection_.lat_lon_deg({between(x_, 0.5 * nx()), between(y_, 0.5 * ny())}).y;
+  MapGrid(std::vector<double> x_m, std::vector<double> y_m, const MapProjection& projection)
+      : x_(std::move(x_m)), y_(std::move(y_m)), projection_(projection) {
+    // Continuous about the middle, or about what is nearest to it of a disc.
+    constexpr int kSteps = 8;
+    for (int n = 0; n < kSteps * kSteps; ++n) {
+      const glm::dvec2 part = {(n + kSteps / 2) % kSteps, (n / kSteps + kSteps / 2) % kSteps};
+      const glm::dvec2 place = projection_.lat_lon_deg(
+          {between(x_, part.x * nx() / kSteps), between(y_, part.y * ny() / kSteps)});
+      if (!std::isfinite(place.y)) continue;
+      centre_deg_ = place.y;
+      break;
+    }
   }
   int nx() const override { return int(x_.size()) - 1; }
   int ny() const override { return int(y_.size()) - 1; }
@@ -144,7 +181,7 @@ class MapGrid : public HorizontalGrid {
   }
 
  private:
-  std::vector<double> x_, y_;
+  std::vector<double> x_, y_;  // edges
   MapProjection projection_;
   double centre_deg_ = 0;
 };
@@ -168,7 +205,7 @@ Turn turn_of(const std::vector<double>& longitude_deg) {
 
 std::unique_ptr<HorizontalGrid> axes_grid(std::vector<double> latitude_deg,
                                           std::vector<double> longitude_deg,
-                                          const std::string& where) {
+                                          const std::string& where, AxisEdges edges) {
   check_latitudes(latitude_deg, where);
   unwrap_deg(longitude_deg);
   for (const double longitude : longitude_deg)
@@ -181,20 +218,23 @@ std::unique_ptr<HorizontalGrid> axes_grid(std::vector<double> latitude_deg,
     refuse_axis(
         where, "longitudes within one turn",
         std::to_string(longitude_deg.front()) + " to " + std::to_string(longitude_deg.back()));
+  auto& [latitude, longitude] = edges;
+  if (latitude.empty()) latitude = edges_between(latitude_deg);
+  if (longitude.empty()) longitude = edges_between(longitude_deg);
+  longitude.resize(std::size_t(turn.columns) + 1);
 #ifdef NEPHO_MUTANT_LONGITUDE_180
-  for (double& longitude : longitude_deg) longitude += 180;
+  for (double& edge : longitude) edge += 180;
 #endif
 #ifdef NEPHO_MUTANT_SWAPPED_LATITUDES
-  std::ranges::reverse(latitude_deg);
+  std::ranges::reverse(latitude);
 #endif
-  std::vector<double> edges = edges_of(latitude_deg);
-  for (double& edge : edges) edge = std::clamp(edge, -90.0, 90.0);
-  if (turn.around && edges.size() > 2) {
-    const double step = std::abs(edges[2] - edges[1]);
-    for (double* end : {&edges.front(), &edges.back()})
+  for (double& edge : latitude) edge = std::clamp(edge, -90.0, 90.0);
+  if (turn.around && latitude.size() > 2) {
+    const double step = std::abs(latitude[2] - latitude[1]);
+    for (double* end : {&latitude.front(), &latitude.back()})
       if (90 - std::abs(*end) < step) *end = std::copysign(90.0, *end);
   }
-  return std::make_unique<AxesGrid>(std::move(edges), edges_of(longitude_deg), turn.around);
+  return std::make_unique<AxesGrid>(std::move(latitude), std::move(longitude), turn.around);
 }
 
 std::unique_ptr<HorizontalGrid> points_grid(int nx, int ny, std::vector<double> latitude_deg,
@@ -202,26 +242,24 @@ std::unique_ptr<HorizontalGrid> points_grid(int nx, int ny, std::vector<double> 
                                             const std::string& where) {
   if (nx < 2 || ny < 2)
     refuse_axis(where, "at least 2 x 2 cells", std::to_string(nx) + " x " + std::to_string(ny));
-  check_latitudes(latitude_deg, where);
-  for (std::size_t n = 0; n < longitude_deg.size(); ++n) {
-    if (!std::isfinite(longitude_deg[n])) refuse_axis(where, "longitudes", "a missing value");
-    // Along the row, and each row's first from the row before.
-    const std::size_t row = std::size_t(nx);
-    if (n == 0) continue;
-    const double before = n % row ? longitude_deg[n - 1] : longitude_deg[n - row];
-    longitude_deg[n] -= 360 * std::round((longitude_deg[n] - before) / 360);
-  }
-#ifdef NEPHO_MUTANT_LONGITUDE_180
-  for (double& longitude : longitude_deg) longitude += 180;
-#endif
-  auto grid = std::make_unique<PointsGrid>(nx, ny, latitude_deg, std::move(longitude_deg));
-  check_turn(nx, ny, grid->directions(), where);
-  return grid;
+  return nodes_grid(nx, ny, false, std::move(latitude_deg), std::move(longitude_deg), where);
 }
 
-std::unique_ptr<HorizontalGrid> map_grid(std::vector<double> x_m, std::vector<double> y_m,
+std::unique_ptr<HorizontalGrid> corners_grid(int nx, int ny, std::vector<double> latitude_deg,
+                                             std::vector<double> longitude_deg,
+                                             const std::string& where) {
+  return nodes_grid(nx, ny, true, std::move(latitude_deg), std::move(longitude_deg), where);
+}
+
+std::unique_ptr<HorizontalGrid> map_edges_grid(std::vector<double> x_m, std::vector<double> y_m,
+                                               const MapProjection& projection) {
+  return std::make_unique<MapGrid>(std::move(x_m), std::move(y_m), projection);
+}
+
+std::unique_ptr<HorizontalGrid> map_grid(const std::vector<double>& x_m,
+                                         const std::vector<double>& y_m,
                                          const MapProjection& projection) {
-  return std::make_unique<MapGrid>(x_m, y_m, projection);
+  return map_edges_grid(edges_between(x_m), edges_between(y_m), projection);
 }
 
 std::unique_ptr<HorizontalGrid> plane_grid(std::vector<double> x_m, std::vector<double> y_m) {

@@ -102,7 +102,8 @@ std::vector<float> Levels::of_levels(const std::vector<float>& field, std::size_
   std::vector<double> level(count);
   bool any = false;
   for (std::size_t n = 0; n < cells(); ++n) {
-    for (std::size_t k = 0; k < count; ++k) level[k] = height_m(double(field[k * cells() + n]));
+    for (std::size_t k = 0; k < count; ++k)
+      level[k] = height_m(double(field[k * cells() + n])) + base_m(ground[n]);
     any |= fill_levels(level);
     interfaces_of_levels_m(level, ground[n], {&result[n * (count + 1)], count + 1});
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct Levels {
   bool from_top = false;
   double factor = 1, offset = 0;
   bool geopotential = false;  // of geopotential height, after the factor
+  bool above_ground = false;  // rather than above the sea
 
   const FieldReader& reader() const { return *request.reader; }
   const DataFile& file() const { return *reader().file; }
@@ -40,6 +42,10 @@ struct Levels {
   std::size_t cells() const { return std::size_t(reader().nx) * std::size_t(reader().ny); }
 
   double height_m(double value) const;
+  // What is added to it; `ground_m` may be NaN.
+  double base_m(double ground_m) const {
+    return above_ground && !std::isnan(ground_m) ? ground_m : 0;
+  }
   // NaN where it is not known.
   std::vector<double> terrain_m(std::size_t time) const;
   // rising_interfaces() of this file.
@@ -53,7 +59,8 @@ std::shared_ptr<Levels> levels_of(const VerticalRequest& request, const FileVari
 // The ways, each in the file that its name says; false: not this one.
 using Way = bool(const VerticalRequest&, Vertical&);
 Way by_half_levels, by_level_heights, by_geopotential_height, by_geopotential,
-    by_height_axis;                         // height_levels.cpp
-Way by_pressure_levels, by_pressure_field;  // pressure_levels.cpp
+    by_height_axis;                                             // height_levels.cpp
+Way by_hybrid_heights;                                          // hybrid_heights.cpp
+Way by_hybrid_pressure, by_pressure_levels, by_pressure_field;  // pressure_levels.cpp
 
 }  // namespace nepho::forecast

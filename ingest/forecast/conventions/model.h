@@ -47,7 +47,8 @@ struct Model {
   std::function<std::vector<float>(std::size_t time, const Air*)> interfaces_m;
   // Lowest and highest interface of a time, by less reading than interfaces_m; may be absent.
   std::function<glm::dvec2(std::size_t time)> height_range_m;
-  bool heights_change = true;  // with time
+  bool heights_change = true;         // with time
+  bool heights_on_ellipsoid = false;  // rather than over the sea
   std::function<ForecastGround(std::size_t time)> ground;
   std::vector<std::string> assumptions, facts;
 };

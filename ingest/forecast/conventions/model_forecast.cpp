@@ -153,9 +153,25 @@ CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& gri
   setting.water = ground_of(index).water;
   if (has_ice_)
     for (int j = 0; j < model_.ny; ++j)
-      for (int i = 0; i < model_.nx; ++i)
-        setting.latitude_deg.push_back(float(grid.lat_lon_deg(i + 0.5, j + 0.5).x));
+      for (int i = 0; i < model_.nx; ++i) {
+        const double latitude_deg = grid.lat_lon_deg(i + 0.5, j + 0.5).x;
+        setting.latitude_deg.push_back(std::isnan(latitude_deg) ? 0 : float(latitude_deg));
+      }
   return setting;
+}
+
+// Cells with a corner off a satellite's disc hold nothing.
+void clear_off_planet(const HorizontalGrid& grid, ForecastColumns& columns) {
+  if (grid.polygons()) return;
+  const std::size_t nz = std::size_t(columns.nz), nx = std::size_t(columns.nx);
+  for (std::size_t cell = 0; cell * nz < columns.extinction_per_m.size(); ++cell) {
+    const double x = double(cell % nx), y = double(cell / nx);
+    const double sum = grid.lat_lon_deg(x, y).x + grid.lat_lon_deg(x + 1, y).x +
+                       grid.lat_lon_deg(x, y + 1).x + grid.lat_lon_deg(x + 1, y + 1).x;
+    if (!std::isnan(sum)) continue;
+    for (std::vector<float>* values : {&columns.extinction_per_m, &columns.ice_extinction_per_m})
+      if (!values->empty()) std::fill_n(values->begin() + std::ptrdiff_t(cell * nz), nz, 0.0f);
+  }
 }
 
 Loaded ModelForecast::load(std::size_t time) const {
@@ -179,6 +195,7 @@ Loaded ModelForecast::load(std::size_t time) const {
     add_water(water, model_.field(*water.variable, index), air, cloud, columns,
               is_cloud ? cloud_path : rain_path, result.statistics);
   }
+  clear_off_planet(*model_.grid(index), columns);
   WaterStatistics& s = result.statistics;
   s.highest_cloud_kg_per_m2 = double(*std::ranges::max_element(cloud_path));
   s.highest_precipitation_kg_per_m2 = double(*std::ranges::max_element(rain_path));
@@ -235,9 +252,10 @@ void ModelForecast::open_first_water() {
 void ModelForecast::say(const WaterStatistics& s) {
   auto& facts = model_.facts;
   // The range of EGM2008: Pavlis et al. (2012), doi:10.1029/2011JB008916.
-  model_.assumptions.push_back(
-      "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to "
-      "86 m above it.");
+  if (!model_.heights_on_ellipsoid)
+    model_.assumptions.push_back(
+        "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to "
+        "86 m above it.");
   std::string names;
   for (const WaterVariable& w : model_.water)
     names += (names.empty() ? "" : ", ") + w.variable->name + " (" + name_of(w.species) +

@@ -15,6 +15,9 @@ const VariableNames kPressure = {{"air_pressure", "air_pressure_at_full_level_ce
                                  {"pres", "p", "pfull", "pressure", "pa"}};
 const VariableNames kSurfacePressure = {
     {"surface_air_pressure"}, {"ps", "psfc", "sp", "pressfc", "surface_pressure", "psurf"}};
+const VariableNames kLogSurfacePressure = {
+    {"logarithm_of_surface_pressure", "logarithm_of_surface_air_pressure"},
+    {"lnsp", "lsp", "lnps"}};
 const VariableNames kSpecificHumidity = {
     {"specific_humidity", "specific_humidity_at_full_level_center"},
     {"q", "qv", "hus", "spfh", "huss", "shum"}};
@@ -29,6 +32,8 @@ const VariableNames kDropletNumber = {
 const VariableNames kTerrain = {{"surface_altitude", "surface_height", "height_above_sea_level"},
                                 {"hgt", "orog", "orography", "topography_c", "hsurf", "zs",
                                  "terrain", "topo", "topography", "phis_height"}};
+const VariableNames kSurfaceGeopotential = {{"surface_geopotential"},
+                                            {"phis", "fis", "z", "z_surf", "geosp"}};
 const VariableNames kLandFraction = {{"land_area_fraction", "land_binary_mask"},
                                      {"landmask", "lsm", "fr_land", "land", "sftlf", "landfrac"}};
 const VariableNames kHalfLevelHeight = {

@@ -17,9 +17,10 @@ struct VariableNames {
 };
 
 namespace names {
-extern const VariableNames kTemperature, kPressure, kSurfacePressure, kSpecificHumidity,
-    kVapourMixingRatio, kRelativeHumidity, kCloudFraction, kDropletNumber, kTerrain, kLandFraction,
-    kHalfLevelHeight, kFullLevelHeight, kGeopotentialHeight, kGeopotential, kLatitude, kLongitude;
+extern const VariableNames kTemperature, kPressure, kSurfacePressure, kLogSurfacePressure,
+    kSpecificHumidity, kVapourMixingRatio, kRelativeHumidity, kCloudFraction, kDropletNumber,
+    kTerrain, kSurfaceGeopotential, kLandFraction, kHalfLevelHeight, kFullLevelHeight,
+    kGeopotentialHeight, kGeopotential, kLatitude, kLongitude;
 }
 
 // The first variable that answers to the names, standard names before names, and that `accept`

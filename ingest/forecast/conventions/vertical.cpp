@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/error.h"
+#include "forecast/conventions/hybrid_pressure.h"
 #include "forecast/conventions/levels.h"
 
 namespace nepho::forecast {
@@ -21,20 +22,23 @@ UnitOf unit_of(const FileVariable& variable, const Dimension& wanted) {
 }
 
 Vertical find_vertical(const VerticalRequest& request) {
-  static constexpr std::array<Way*, 7> kWays = {
-      by_half_levels,     by_level_heights, by_geopotential_height, by_geopotential,
-      by_pressure_levels, by_height_axis,   by_pressure_field};
+  static constexpr std::array<Way*, 9> kWays = {
+      by_half_levels,     by_level_heights,  by_geopotential_height,
+      by_geopotential,    by_hybrid_heights, by_hybrid_pressure,
+      by_pressure_levels, by_height_axis,    by_pressure_field};
   Vertical vertical;
   const DataFile& file = *request.reader->file;
   // Refused here whatever else there is: an axis out of order.
-  const PressureLevels levels = pressure_levels(file, request.z);
+  const auto hybrid = hybrid_pressure(request, true);
+  const PressureLevels levels = hybrid ? PressureLevels{} : pressure_levels(file, request.z);
   for (Way* const way : kWays)
     if (way(request, vertical)) {
       vertical.level_pressure_Pa = levels.pressure_Pa;
+      if (hybrid && !vertical.pressure_Pa) vertical.pressure_Pa = hybrid_field(request, *hybrid);
       if (!levels.pressure_Pa.empty() && levels.from_top != vertical.from_top)
         refuse_levels(file.path() + " [" + file.name(request.z) + "]",
                       "pressures in another order than the heights (" + vertical.how + ")");
-      if (file.size(request.z) < 2 && way != by_half_levels)
+      if (file.size(request.z) < 2 && !vertical.has_interfaces)
         throw Error({"one level has no thickness", file.path(), "at least two levels",
                      file.name(request.z) + " of size 1", ""});
       vertical.facts.push_back("Heights: " + vertical.how + ".");
@@ -46,7 +50,9 @@ Vertical find_vertical(const VerticalRequest& request) {
                file.path() + " [" + file.name(request.z) + "]",
                "units of length or pressure, or a field of heights, geopotential or pressure on "
                "these levels",
-               "units " + unit, "hybrid levels need their heights or pressures as a variable"});
+               "units " + unit,
+               "hybrid levels need their formula_terms with surface pressure or ground height, or "
+               "their heights or pressures as a variable"});
 }
 
 }  // namespace nepho::forecast

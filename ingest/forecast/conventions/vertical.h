@@ -13,14 +13,18 @@ namespace nepho::forecast {
 
 // Where the levels of a CF-like file stand. The ways that are known are the rows of a table in
 // vertical.cpp, tried in order: heights of half levels; heights of levels; geopotential height;
-// geopotential; pressure (one per level, or a field) with temperature, hydrostatic; one height per
-// level.
+// geopotential; heights by a formula of the ground's; pressures, by a formula of the surface's, one
+// per level or a field, with temperature, hydrostatic; one height per level.
 struct Vertical {
   bool from_top = false;                   // the file's first level is the highest
   std::vector<double> level_pressure_Pa;   // from the ground up, where levels are pressures
-  const FileVariable* pressure = nullptr;  // as a field
-  bool heights_change = false;             // with time
-  std::string how;                         // "heights from z_ifc"
+  const FileVariable* pressure = nullptr;  // as a field, or
+  // by a formula, [k][j][i] from the ground up.
+  std::function<std::vector<float>(std::size_t time)> pressure_Pa;
+  bool heights_change = false;  // with time
+  bool has_interfaces = false;  // the file's own, so that one level has a thickness
+  bool on_ellipsoid = false;    // heights over the ellipsoid rather than the sea
+  std::string how;              // "heights from z_ifc"
   // As Model's.
   std::function<std::vector<float>(std::size_t time, const Air*)> interfaces_m;
   std::function<glm::dvec2(std::size_t time)> height_range_m;
@@ -29,7 +33,8 @@ struct Vertical {
 
 struct VerticalRequest {
   std::shared_ptr<const FieldReader> reader;
-  int z = -1;                                 // the water's level dimension
+  const FileVariable* water = nullptr;
+  int z = -1;                                 // its level dimension
   const FileVariable* temperature = nullptr;  // on it
   std::function<Air(std::size_t time)> air;   // may be asked for in interfaces_m
   std::function<std::vector<float>(std::size_t time)> terrain_m;  // empty: not known
@@ -41,9 +46,12 @@ Vertical find_vertical(const VerticalRequest& request);
 // The pressure of levels where levels are pressures; empty where they are not. From the ground up.
 struct PressureLevels {
   std::vector<double> pressure_Pa;
+  std::vector<double> interface_Pa;  // by the axis' bounds; empty: not known
   bool from_top = false;
 };
 PressureLevels pressure_levels(const DataFile& file, int z);
+
+inline constexpr Dimension kGeopotentialUnit{.m = 2, .s = -2};
 
 // Unit of a variable where it is of the wanted kind: SI value = value * factor + offset.
 struct UnitOf {

@@ -113,4 +113,20 @@ void hypsometric_heights_m(std::span<const double> pressure_Pa, std::span<const 
   }
 }
 
+double height_in_layers_m(std::span<const double> pressure_Pa, std::span<const double> tv_K,
+                          std::span<const double> height_m, double at_Pa) {
+  const std::size_t nz = pressure_Pa.size();
+  std::size_t k = 0;  // the level below
+  while (k + 1 < nz && pressure_Pa[k + 1] > at_Pa) ++k;
+  double here_K = tv_K[k];
+  if (at_Pa < pressure_Pa[k] && k + 1 < nz) {
+    // Linear in height is a power of the pressure.
+    const double power =
+        std::log(tv_K[k + 1] / tv_K[k]) / std::log(pressure_Pa[k + 1] / pressure_Pa[k]);
+    here_K = tv_K[k] * std::pow(at_Pa / pressure_Pa[k], power);
+  }
+  return height_m[k] +
+         kScale_m_per_K * logarithmic_mean(tv_K[k], here_K) * std::log(pressure_Pa[k] / at_Pa);
+}
+
 }  // namespace nepho::forecast

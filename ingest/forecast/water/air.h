@@ -39,4 +39,11 @@ void hypsometric_heights_m(std::span<const double> pressure_Pa,
                            double surface_pressure_Pa, double surface_height_m,
                            std::span<double> height_m);
 
+// The height at any pressure in the same layers, of levels whose `height_m` those are: the virtual
+// temperature is linear in height between levels, and constant below the lowest and above the
+// topmost.
+double height_in_layers_m(std::span<const double> pressure_Pa,
+                          std::span<const double> virtual_temperature_K,
+                          std::span<const double> height_m, double at_Pa);
+
 }  // namespace nepho::forecast

@@ -14,19 +14,24 @@ namespace nepho {
 // trilinear cells as the picture's, and a bound that is that of the brick's own samples.
 class Leaves {
  public:
-  using Sizes = std::array<int, 3>;  // log2 of finest cells in one of the leaf's, by axis
+  using Sizes = std::array<int, 3>;
+  struct Level {
+    SplitMask mask = 0;
+    Sizes cell_bits{};  // log2 of finest cells in one of this level's, by axis
+    glm::dvec3 cells_per_finest{1.0};
+  };
 
   struct Leaf {
     NodeKind kind = NodeKind::kEmpty;  // never kInner
     double most_per_m = 0;             // no extinction in it is greater
     const LeafBrick* brick = nullptr;
-    Sizes cell_bits{};
+    const Level* level = nullptr;
 
     // Walls in finest cells of the leaf that holds `cell`, which may be of another period.
     ChartRay::Block block(const ChartRay::Cell& cell) const {
       ChartRay::Block block;
       for (std::size_t a = 0; a < 3; ++a) {
-        const int bits = cell_bits[a] + 3;
+        const int bits = level->cell_bits[a] + 3;
         block.low[a] = cell[a] >> bits << bits;
         block.high[a] = block.low[a] + (std::int64_t(1) << bits);
       }
@@ -38,8 +43,10 @@ class Leaves {
     double ice_part(const ChartRay::Block& block, const glm::dvec3& at) const;
   };
 
-  // `tree` outlives this. Costs 16 bytes a node besides it.
+  // `tree` outlives this. Costs kNodeBytes a node besides it.
+  static constexpr std::size_t kNodeBytes = 20;
   explicit Leaves(const VolumeTree& tree);
+  Leaves(const Leaves&) = delete;
   Leaf leaf(int root, const Index3& finest_cell) const;
   const VolumeInfo& info() const { return tree_.source->info(); }
 
@@ -51,14 +58,16 @@ class Leaves {
     std::uint8_t level = 0;
     NodeKind kind = NodeKind::kEmpty;
   };
-  struct Level {
-    SplitMask mask = 0;
-    Sizes cell_bits{};  // of this level's cells
-  };
+  const Node& child(const Node& parent, int level, const Index3& finest_cell) const;
+  void make_entries(const Lattice& lattice, int roots);
 
   const VolumeTree& tree_;
   std::vector<Node> nodes_;
   std::vector<Level> levels_;
+  // Short cuts for the way down: the nodes of one level (or the leaves above it) as a grid.
+  Sizes entry_bits_{};  // log2 of finest cells
+  Index3 entry_count_{};
+  std::vector<std::uint32_t> entries_;
 };
 
 // Follows a ray from leaf to leaf. visit(t0_m, t1_m, root, block, leaf) returns whether to go on.

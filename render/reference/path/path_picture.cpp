@@ -106,7 +106,7 @@ Forest finest_forest(const RenderRequest& request, double budget_mib) {
   refinement.settings.pixels_per_voxel = 0;
   refinement.settings.tolerance = 0;
   refinement.settings.budget_mib = budget_mib;
-  refinement.cost.node_bytes = sizeof(TreeNode) + 16;
+  refinement.cost.node_bytes = sizeof(TreeNode) + Leaves::kNodeBytes;
   refinement.cost.brick_bytes = sizeof(LeafBrick);
   Forest forest = build_forest(request.volumes, refinement);
   if (forest.budget_bound)

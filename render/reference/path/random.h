@@ -20,8 +20,8 @@ class Random {
     const std::uint64_t high = word() >> 5, low = word() >> 6;
     return double(high << 26 | low) * 0x1p-53;
   }
-  // Exponential of mean 1. 1 - u is never 0, and its least value 2^-53 is a depth of 36.7.
-  double depth() { return -std::log1p(-uniform()); }
+  // Exponential of mean 1. 1 - u is exact and never 0; its least value 2^-53 is a depth of 36.7.
+  double depth() { return -std::log(1 - uniform()); }
 
  private:
   std::uint32_t word() {

@@ -31,12 +31,6 @@ Turn sample_draine(double g, double alpha, Random& random) {
   }
 }
 
-double draine_phase(double one_minus_cos, double g, double alpha) {
-  const double mu = 1 - one_minus_cos;
-  return f64::hg_phase(one_minus_cos, g) * (1 + alpha * mu * mu) /
-         (1 + alpha * (1 + 2 * g * g) / 3);
-}
-
 Turn sample_rayleigh(Random& random) {
   while (true) {
     const double down = 2 * random.uniform(), mu = 1 - down;
@@ -55,9 +49,14 @@ glm::dvec3 turned(const glm::dvec3& direction, const Turn& turn, Random& random)
                         turn.sine * (std::cos(azimuth) * first + std::sin(azimuth) * second));
 }
 
+PhaseSampler::Kind PhaseSampler::kind_of(PhaseKind kind) {
+  if (kind == PhaseKind::kMie) return Kind::kTable;
+  return kind == PhaseKind::kHgDraine ? Kind::kHgDraine : Kind::kHenyeyGreenstein;
+}
+
 PhaseSampler::PhaseSampler(const Phase& phase)
-    : kind_(phase.kind == PhaseKind::kMie ? Kind::kTable : Kind::kHenyeyGreenstein),
-      asymmetry_(phase.asymmetry) {
+    : kind_(kind_of(phase.kind)), asymmetry_(phase.asymmetry) {
+  if (kind_ == Kind::kHgDraine) fit_ = hg_draine_fit(phase.effective_radius_m);
   const std::vector<float> log_values = phase_table(phase);  // refuses what is out of range
   if (kind_ != Kind::kTable) return;
   for (int c = 0; c < 3; ++c) tables_[std::size_t(c)] = make_table(log_values, c);
@@ -83,6 +82,7 @@ PhaseSampler::Table PhaseSampler::make_table(const std::vector<float>& log_value
 
 double PhaseSampler::value(int wavelength, double one_minus_cos) const {
   if (kind_ == Kind::kHenyeyGreenstein) return f64::hg_phase(one_minus_cos, asymmetry_);
+  if (kind_ == Kind::kHgDraine) return fit_.value(one_minus_cos);
   if (kind_ == Kind::kRayleigh) return f64::rayleigh_phase(one_minus_cos);
   if (kind_ == Kind::kCornetteShanks) return f64::cornette_shanks_phase(one_minus_cos, asymmetry_);
   const Table& table = tables_[std::size_t(wavelength)];
@@ -92,8 +92,19 @@ double PhaseSampler::value(int wavelength, double one_minus_cos) const {
   return std::exp(table.log_values[i] + f * (table.log_values[i + 1] - table.log_values[i]));
 }
 
+glm::dvec3 PhaseSampler::values(double one_minus_cos) const {
+  const double first = value(0, one_minus_cos);
+  if (grey()) return glm::dvec3{first};
+  return {first, value(1, one_minus_cos), value(2, one_minus_cos)};
+}
+
 Turn PhaseSampler::sample(int wavelength, Random& random) const {
   if (kind_ == Kind::kHenyeyGreenstein) return sample_hg(asymmetry_, random.uniform());
+  if (kind_ == Kind::kHgDraine) {
+    if (random.uniform() < fit_.draine_part)
+      return sample_draine(fit_.draine_asymmetry, fit_.alpha, random);
+    return sample_hg(fit_.peak_asymmetry, random.uniform());
+  }
   if (kind_ == Kind::kRayleigh) return sample_rayleigh(random);
   if (kind_ == Kind::kCornetteShanks) return sample_draine(asymmetry_, 1, random);
   const Table& table = tables_[std::size_t(wavelength)];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bricks/volume_info.h"
+#include "optics/hg_draine.h"
 #include "reference/path/random.h"
 
 namespace nepho {
@@ -22,7 +23,6 @@ Turn sample_hg(double g, double u);
 // Draine (2003, doi:10.1086/379118), HG (1 + alpha mu^2) normalised: HG, and then rejection.
 // Bounded: of any two trials one is taken, or more.
 Turn sample_draine(double g, double alpha, Random& random);
-double draine_phase(double one_minus_cos, double g, double alpha);  // 1/sr
 
 // (1 + mu^2) 3 / (16 pi), by rejection.
 Turn sample_rayleigh(Random& random);
@@ -37,8 +37,9 @@ inline double one_minus_cos(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 // A volume's phase function, by the table that the renderer looks it up in (phase_table.h), or by
-// its formula for Henyey-Greenstein. Samples are exactly of the density that value() tells: the
-// table's curve is its own envelope, texel by texel, and what is above the curve is rejected.
+// its formula for Henyey-Greenstein and HG + Draine. Samples are exactly of the density that
+// value() tells: the table's curve is its own envelope, texel by texel, and what is above the curve
+// is rejected.
 class PhaseSampler {
  public:
   // Throws Error as phase_table() does.
@@ -53,10 +54,18 @@ class PhaseSampler {
   bool grey() const { return kind_ != Kind::kTable; }
   // 1/sr at wavelength 0, 1 or 2 (650, 550, 450 nm).
   double value(int wavelength, double one_minus_cos) const;
+  glm::dvec3 values(double one_minus_cos) const;
   Turn sample(int wavelength, Random& random) const;
 
  private:
-  enum class Kind : std::uint8_t { kTable, kHenyeyGreenstein, kRayleigh, kCornetteShanks };
+  enum class Kind : std::uint8_t {
+    kTable,
+    kHenyeyGreenstein,
+    kHgDraine,
+    kRayleigh,
+    kCornetteShanks
+  };
+  static Kind kind_of(PhaseKind kind);
   PhaseSampler(Kind kind, double asymmetry) : kind_(kind), asymmetry_(asymmetry) {}
   struct Table {
     std::vector<double> log_values;          // by texel; divided by their integral
@@ -67,6 +76,7 @@ class PhaseSampler {
 
   Kind kind_;
   double asymmetry_ = 0;
+  HgDraine fit_;
   std::array<Table, 3> tables_;
 };
 

@@ -9,9 +9,7 @@
 namespace nepho {
 namespace {
 
-constexpr double kOffGround_m = 0.05;  // where the ground's own rays begin
-constexpr double kOffTerrain = 0.02;   // of a cell of terrain, the same
-constexpr double kMirrored = 0.5;      // of the paths that leave water
+constexpr double kMirrored = 0.5;  // of the paths that leave water
 
 double cosine(const glm::dvec3& a, const glm::dvec3& b) {
   return std::clamp(glm::dot(a, b), 0.0, 1.0);
@@ -54,8 +52,8 @@ glm::dvec3 Surroundings::disc_W_per_m2_sr_nm(const glm::dvec3& direction) const 
   return sun_density(direction) * irradiance_;
 }
 
-double Surroundings::ground_m(const Ray& ray) const {
-  return surface_ ? surface_->distance_m(ray) : ground_.distance_m(ray);
+double Surroundings::ground_m(const Ray& ray, bool from_it) const {
+  return surface_ ? surface_->distance_m(ray, from_it) : ground_.distance_m(ray);
 }
 
 glm::dvec3 Surroundings::background_W_per_m2_sr_nm(const glm::dvec3& direction, bool ground) const {
@@ -76,8 +74,6 @@ Surroundings::Spot Surroundings::spot(const glm::dvec3& point_m) const {
   spot.land = look_.land_albedo;
   spot.body = look_.water_albedo;
   spot.water = from.water;
-  spot.start_m = point_m + kOffGround_m * spot.up;
-  if (surface_->terrain()) spot.start_m += kOffTerrain * surface_->cell_m() * spot.normal;
   return spot;
 }
 

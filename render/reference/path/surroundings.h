@@ -19,6 +19,7 @@ class Surroundings {
 
   // A direction to the sun: of its disc, evenly; of the beam, the one.
   glm::dvec3 to_sun(Random& random) const;
+  const glm::dvec3& sun_centre() const { return to_sun_; }
   bool beam() const { return !(sun_radius_rad_ > 0); }
   // Density of to_sun(), 1/sr; 0 outside the disc, and for a beam.
   double sun_density(const glm::dvec3& direction) const;
@@ -26,8 +27,8 @@ class Surroundings {
   // Of the disc, seen in one of its directions.
   glm::dvec3 disc_W_per_m2_sr_nm(const glm::dvec3& direction) const;
 
-  // Where a ray meets the ground, or kNoDistance_m.
-  double ground_m(const Ray& ray) const;
+  // Where a ray meets the ground, or kNoDistance_m; `from_it`: other than where it starts.
+  double ground_m(const Ray& ray, bool from_it = false) const;
   // Whether it scatters; otherwise `below` is seen there.
   bool ground_scatters() const { return surface_.has_value(); }
   // What is seen without anything in front; the sun's disc is not in it.
@@ -40,7 +41,6 @@ class Surroundings {
     glm::dvec3 up, normal;
     glm::dvec3 land{0.0}, body{0.0};  // albedos
     double water = 0;                 // part
-    glm::dvec3 start_m;               // where its rays begin
   };
   Spot spot(const glm::dvec3& point_m) const;
   // Reflectance distribution times the cosine to the light, per sr: by colour.
