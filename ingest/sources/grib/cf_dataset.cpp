@@ -161,10 +161,6 @@ void Builder::add_grid() {
       axis("y", grid.y, "projection_y_coordinate", "m", "Y");
       axis("x", grid.x, "projection_x_coordinate", "m", "X");
       break;
-    case Grid::Kind::kAngles:
-      axis("y", grid.y, "projection_y_angular_coordinate", "radian", "Y");
-      axis("x", grid.x, "projection_x_angular_coordinate", "radian", "X");
-      break;
     case Grid::Kind::kPlaces:
       places_ = {dimension("y", grid.ny), dimension("x", grid.nx)};
       in_memory("latitude", places_, grid.latitude_deg,

@@ -150,7 +150,7 @@ void find_axes(const Message& message, Grid& grid, const std::function<Message*(
   } else if (type == "polar_stereographic") {
     polar_stereographic(message, grid);
   } else if (type == "space_view") {
-    space_view(message, grid);
+    grid.why = "a satellite's view is not read from GRIB";
   } else {
     by_places(grid, whole);
   }
@@ -244,7 +244,7 @@ Grid grid_of(const Message& message, const std::function<Message*()>& whole) {
   find_axes(message, grid, whole);
 #ifndef NEPHO_MUTANT_UNREVERSED
   if (grid.kind == Grid::Kind::kLatLon || grid.kind == Grid::Kind::kRotated ||
-      grid.kind == Grid::Kind::kMap || grid.kind == Grid::Kind::kAngles) {
+      grid.kind == Grid::Kind::kMap) {
     if (grid.x_falls) std::ranges::reverse(grid.x);
     if (grid.y_falls) std::ranges::reverse(grid.y);
   }

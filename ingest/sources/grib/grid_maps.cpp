@@ -155,33 +155,6 @@ void polar_stereographic(const Message& message, Grid& grid) {
   map_axes(message, grid, spec, "DxInMetres", "DyInMetres");
 }
 
-// Template 3.90: angles from the line of sight to the subsatellite point; Nr is the distance from
-// the Earth's centre in its radii, dx and dy its diameter in points.
-void space_view(const Message& message, Grid& grid) {
-  const Earth earth = earth_of(message);
-  const double distance = message.need_number("NrInRadiusOfEarth");
-  if (!(distance > 1)) refuse_grid(message, "a camera in the Earth");
-  grid.kind = Grid::Kind::kAngles;
-  put_name(grid, "geostationary", earth);
-  put(grid, "perspective_point_height", (distance - 1) * earth.equatorial_m);
-  put(grid, "longitude_of_projection_origin",
-      message.need_number("longitudeOfSubSatellitePointInDegrees"));
-  put(grid, "latitude_of_projection_origin", 0);
-  grid.mapping.push_back({"sweep_angle_axis", "y", {}});
-  const double diameter_rad = 2 * std::asin(1 / distance);
-  const auto axis = [&](std::size_t count, const char* size, const char* centre, const char* origin,
-                        bool falls) {
-    const double step = diameter_rad / message.need_number(size);
-    const double first = message.number(origin).value_or(0) - message.need_number(centre);
-    std::vector<double> angles;
-    for (std::size_t n = 0; n < count; ++n)
-      angles.push_back((falls ? -1 : 1) * step * (first + double(n)));
-    return angles;
-  };
-  grid.x = axis(grid.nx, "dx", "XpInGridLengths", "Xo", grid.x_falls);
-  grid.y = axis(grid.ny, "dy", "YpInGridLengths", "Yo", grid.y_falls);
-}
-
 void rotate(const Message& message, Grid& grid) {
   grid.kind = Grid::Kind::kRotated;
   put_name(grid, "rotated_latitude_longitude", earth_of(message));

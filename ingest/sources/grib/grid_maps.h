@@ -11,7 +11,6 @@ namespace nepho::grib {
 void lambert(const Message& message, Grid& grid);
 void mercator(const Message& message, Grid& grid);
 void polar_stereographic(const Message& message, Grid& grid);
-void space_view(const Message& message, Grid& grid);
 // Longitudes and latitudes found so far are those of a rotated pole.
 void rotate(const Message& message, Grid& grid);
 
