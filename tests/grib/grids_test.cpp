@@ -404,6 +404,19 @@ TEST(GribGrids, TrianglesAreNamed) {
     made.set(parameter(2, "clwmr")).set(isobaric(2, hPa)).set(at_hour(2, 0));
     bytes += made.values(std::vector<double>(50, 1e-4)).bytes();
   }
+  const auto place = [](int number, double first, double step) {
+    Made made(2, {{"gridType", "unstructured_grid"}, {"numberOfDataPoints", 50}});
+    made.set({{"discipline", 0}, {"parameterCategory", 191}, {"parameterNumber", number}});
+    made.set(level(2, 1, 1, 0)).set(at_hour(2, 0)).set({{"bitsPerValue", 24}});
+    std::vector<double> values;
+    for (int n = 0; n < 50; ++n) values.push_back(first + step * (number == 1 ? n / 10 : n % 10));
+    return made.values(values).bytes();
+  };
+  // With the centres of the cells in the file they have places.
+  const GribFile placed({write_bytes("placed.grib2", bytes + place(1, 45, 0.5) + place(2, 5, 0.5))},
+                        {});
+  EXPECT_EQ(placed.shape_text(*placed.find("clat")), "clat(ncells 50)");
+  EXPECT_NEAR(all_of(placed, "clon")[13], 6.5, 1e-4);
   const std::string path = write_bytes("icon.grib2", bytes);
   const GribFile file({path}, {});
   EXPECT_EQ(file.shape_text(*file.find("clwmr")), "clwmr(time 1, isobaric 2, ncells 50)");

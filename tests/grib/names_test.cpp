@@ -127,6 +127,9 @@ TEST(GribNames, PressuresAreOneAxis) {
   const GribFile file({write_bytes("pressures.grib2", bytes)}, {});
   EXPECT_EQ(all_of(file, "isobaric"), (std::vector<double>{0.5, 40, 85000}));
   EXPECT_EQ(at(file, "isobaric", "units"), "Pa");
+  const GribFile first(
+      {write_bytes("pressures.grib1", one(1, parameter(1, "clwmr"), isobaric(1, 850), 1e-4))}, {});
+  EXPECT_EQ(all_of(first, "isobaric"), (std::vector<double>{85000}));
 }
 
 // Half levels k = 0 ... 4 from the top; levels 2 and 3 of 4 are in the file.
@@ -175,6 +178,46 @@ TEST(GribNames, HybridLevelsHaveTheirPressures) {
     EXPECT_NEAR(all_of(file, "orog")[0], 500, 1e-2);
     EXPECT_EQ(file.find("z"), nullptr);
   }
+}
+
+// Levels of a and b over the ground, isothermal: hypsometric by hand.
+TEST(GribNames, HybridLevelsStandAtTheirHeights) {
+  const std::vector<double> a = {0, 5000, 10000, 5000, 0}, b = {0, 0, 0.2, 0.7, 1};
+  std::vector<double> pv = a;
+  pv.insert(pv.end(), b.begin(), b.end());
+  constexpr double kSurface_Pa = 97000, kGround_m = 500, kTemperature_K = 280;
+  std::string bytes;
+  for (long number = 2; number <= 4; ++number)
+    for (const char* name : {"clwmr", "t"}) {
+      Made made(2, GribTwin().grid());
+      made.set(at_hour(2, 0)).set(parameter(2, name)).set(level(2, 105, 109, number));
+      made.set({{"PVPresent", 1}}).set("pv", pv).set({{"bitsPerValue", 24}});
+      made.values(std::vector<double>(30, name[0] == 't' ? kTemperature_K
+                                          : number == 3  ? 2e-4
+                                                         : 0));
+      bytes += made.bytes();
+    }
+  const Keys first = level(2, 105, 109, 1);
+  bytes += one(2, grib2(98, 0, 3, 25), first, std::log(kSurface_Pa));
+  bytes += one(2, grib2(98, 0, 3, 4), first, kGround_m * 9.80665);
+  const auto forecast = open({write_bytes("levels.grib2", bytes)});
+  const forecast::ForecastColumns c = forecast->columns(0);
+  ASSERT_EQ(c.nz, 3);
+  // Half levels 4, 3, 2, 1 from the ground up.
+  double height_m = kGround_m;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t half = 4 - k;
+    const double pressure_Pa = a[half] + b[half] * kSurface_Pa;
+    if (k > 0) {
+      const double below_Pa = a[half + 1] + b[half + 1] * kSurface_Pa;
+      height_m += 287.05 * kTemperature_K / 9.80665 * std::log(below_Pa / pressure_Pa);
+    }
+    constexpr double kRadius_m = 6356766;  // of the standard atmosphere's geopotential metre
+    EXPECT_NEAR(double(c.interface_m[k]), kRadius_m * height_m / (kRadius_m - height_m), 2) << k;
+  }
+  EXPECT_EQ(c.extinction_per_m[0], 0);
+  EXPECT_GT(c.extinction_per_m[1], 1e-3f);  // level 3 of 4
+  EXPECT_EQ(c.extinction_per_m[2], 0);
 }
 
 // Layers between HHL's levels, top down: cloud in the second layer of three.

@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "cf_twin.h"
-#include "sources/netcdf/survives.h"
+#include "forecast/files/survives.h"
 #include "wrf_twin.h"
 
 namespace nepho::forecast::test {
@@ -207,11 +207,11 @@ TEST(Malformed, NoHorizontalGrid) {
 }
 
 TEST(Malformed, SurvivesTellsTheEndOfACopy) {
-  EXPECT_TRUE(netcdf::survives([] {}));
-  EXPECT_TRUE(netcdf::survives([] { throw std::runtime_error("met again here"); }));
+  EXPECT_TRUE(survives([] {}));
+  EXPECT_TRUE(survives([] { throw std::runtime_error("met again here"); }));
   testing::internal::CaptureStderr();
-  EXPECT_FALSE(netcdf::survives([] { std::abort(); }));
-  EXPECT_FALSE(netcdf::survives([] {
+  EXPECT_FALSE(survives([] { std::abort(); }));
+  EXPECT_FALSE(survives([] {
     std::fputs("last words\n", stderr);
     std::raise(SIGSEGV);
   }));

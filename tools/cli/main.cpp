@@ -25,7 +25,7 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope render wrfout_d01.nc -o storm.png           place, time, view and sun are worked out
   nephoscope render wrfout_d01.nc --time 2005-08-28T15:00Z --view globe -o globe.png
   nephoscope render wrfout_d01.nc --at 29.9,-90.1 --heading 180 --pitch 12 -o street.png
-  nephoscope render gfs.nc --region 30,160,60,-150 -o pacific.png
+  nephoscope render gfs.grib2 --region 30,160,60,-150 -o pacific.png
   nephoscope render wrfout_d01.nc --sun 2005-08-28T23:00Z --no-planet -o evening.png
   nephoscope render smoke.png --engine reference --noise 1% -o true.exr   the same, path traced
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
@@ -34,7 +34,7 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope compare a.exr b.exr --diff apart.png        and where (FLIP)
   nephoscope bench scene.json --sweep step=0.5,1,2 --sweep budget-mib=64,256 -o report)";
 
-constexpr const char* kRegion = "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF)";
+constexpr const char* kRegion = "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF, GRIB)";
 
 void start_logging() {
   auto logger = spdlog::stderr_logger_mt("nephoscope");
@@ -195,7 +195,7 @@ int run(int argc, char** argv) {
   add_data_options(*draw, render.grid, render.up, render.metres_per_unit, render.density_scale,
                    render.frame);
   draw->add_option("--fps", render.fps, "frames per second of a sequence (24)")->group("Data");
-  draw->add_flag("--force", render.force, "draw values that no cloud has (NetCDF)")->group("Data");
+  draw->add_flag("--force", render.force, "draw values that no cloud has (NetCDF, GRIB)")->group("Data");
   draw->add_option("--region", render.region, kRegion)->group("Data");
   draw->add_flag("--explain-macros", render.explain_macros, "")->group("");
   draw->footer(kExamples);
@@ -207,7 +207,7 @@ int run(int argc, char** argv) {
   tell->add_flag("--json", info.json, "for programs");
   tell->add_flag("--check", info.check, "the source's own field against its finest bricks");
   tell->add_option("--time", info.time, "of the data: 2005-08-28T15:00Z, or seconds");
-  tell->add_flag("--force", info.force, "take values that no cloud has (NetCDF)")->group("Data");
+  tell->add_flag("--force", info.force, "take values that no cloud has (NetCDF, GRIB)")->group("Data");
   tell->add_option("--region", info.region, kRegion)->group("Data");
   add_data_options(*tell, info.grid, info.up, info.metres_per_unit, info.density_scale, info.frame);
   tell->callback([&] { info_command(info); });

@@ -295,10 +295,10 @@ VolumeSpec data_volume(const std::string& file) {
     return volume;
   }
   if (bytes.starts_with(std::string("II*\0", 4)) || bytes.starts_with(std::string("MM\0*", 4)))
-    throw Error({"a raster is no cloud field", file, "NetCDF or VDB", "TIFF", ""});
+    throw Error({"a raster is no cloud field", file, "NetCDF, GRIB or VDB", "TIFF", ""});
   const std::string ending = ending_of(file);
   if (ending.empty())
-    throw Error({"unknown kind of file", file, "NetCDF, or a name with an ending, such as .vdb",
+    throw Error({"unknown kind of file", file, "NetCDF or GRIB, or a name with an ending, such as .vdb",
                  "none", ""});
   volume.source = ending.substr(1);
   return volume;

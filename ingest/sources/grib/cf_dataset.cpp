@@ -161,10 +161,6 @@ void Builder::add_grid() {
       axis("y", grid.y, "projection_y_coordinate", "m", "Y");
       axis("x", grid.x, "projection_x_coordinate", "m", "X");
       break;
-    case Grid::Kind::kAngles:
-      axis("y", grid.y, "projection_y_angular_coordinate", "radian", "Y");
-      axis("x", grid.x, "projection_x_angular_coordinate", "radian", "X");
-      break;
     case Grid::Kind::kPlaces:
       places_ = {dimension("y", grid.ny), dimension("x", grid.nx)};
       in_memory("latitude", places_, grid.latitude_deg,
@@ -251,7 +247,11 @@ void Builder::add_hybrid(const std::string& name, const std::vector<double>& lev
   // Level n lies between half levels n - 1 and n, counted from the top.
   std::vector<double> a, b, a_bounds, b_bounds, bounds;
   for (const double level : levels) {
+#ifdef NEPHO_MUTANT_HALF_LEVELS
+    const std::size_t above = std::size_t(level), below = above + 1;
+#else
     const std::size_t below = std::size_t(level), above = below - 1;
+#endif
     a.push_back(0.5 * (pv[above] + pv[below]));
     b.push_back(0.5 * (pv[half + above] + pv[half + below]));
     for (const std::size_t edge : {above, below}) {

@@ -74,10 +74,8 @@ std::vector<float> GribFile::plane(const FileVariable& variable, int index) cons
       read_field(table_.paths[std::size_t(field.place.file)], field.place);
   bytes_[std::size_t(variable.id)] += bytes.size();
   const Grid& grid = table_.grids[std::size_t(field.layout)];
-  const std::vector<double> values = locked(io_lock_, [&] {
-    const Message message(std::move(bytes), where);
-    return grid.kind == Grid::Kind::kPlaces ? message.places().value : message.values();
-  });
+  const std::vector<double> values =
+      locked(io_lock_, [&] { return Message(std::move(bytes), where).values(); });
   std::vector<float> plane = arranged(grid, values, where);
   switch (values_[std::size_t(variable.id)].change) {
     case Change::kNone:

@@ -2,99 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numeric>
+#include <optional>
 
 #include "core/error.h"
-#include "geo/map_projection.h"
+#include "sources/grib/grid_maps.h"
 
 namespace nepho::grib {
 namespace {
 
-using forecast::FileAttribute;
-
 constexpr double kRounding_deg = 0.6e-3;  // of edition 1's numbers, and of what was made of them
 constexpr double kSamePlace = 1e-3;       // of a step
 constexpr double kMostCells = 4e8;
-
-// Shape of the Earth: GRIB2 table 3.2; edition 1 has a bit for two of them.
-struct Earth {
-  double equatorial_m = 6371229, polar_m = 6371229;
-};
-
-Earth earth_of(const Message& message) {
-  if (message.need_integer("editionNumber") == 1)
-    return message.integer("earthIsOblate").value_or(0) == 1 ? Earth{6378160, 6356775}
-                                                             : Earth{6367470, 6367470};
-  const auto given = [&](const char* value, const char* power, double unit) {
-    const double scaled = double(message.integer(value).value_or(0));
-    return unit * scaled * std::pow(10.0, -double(message.integer(power).value_or(0)));
-  };
-  const auto axes = [&](double unit) {
-    return Earth{given("scaledValueOfEarthMajorAxis", "scaleFactorOfEarthMajorAxis", unit),
-                 given("scaledValueOfEarthMinorAxis", "scaleFactorOfEarthMinorAxis", unit)};
-  };
-  Earth earth;
-  switch (message.integer("shapeOfTheEarth").value_or(6)) {
-    case 0:
-      earth = {6367470, 6367470};
-      break;
-    case 1:
-      earth.equatorial_m = earth.polar_m =
-          given("scaledValueOfRadiusOfSphericalEarth", "scaleFactorOfRadiusOfSphericalEarth", 1);
-      break;
-    case 2:
-      earth = {6378160, 6356775};
-      break;
-    case 3:
-      earth = axes(1000);
-      break;
-    case 4:
-      earth = {6378137, 6356752.314140};
-      break;
-    case 5:
-      earth = {6378137, 6356752.314245};
-      break;
-    case 7:
-      earth = axes(1);
-      break;
-    case 8:
-      earth = {6371200, 6371200};
-      break;
-    case 9:
-      earth = {6377563.396, 6356256.909};
-      break;
-    default:
-      break;
-  }
-  if (!(earth.equatorial_m > 1e5 && earth.polar_m > 1e5 && earth.polar_m <= earth.equatorial_m))
-    throw Error({"a GRIB message's shape of the Earth is not usable", message.where(),
-                 "a radius, or axes of an ellipsoid, in m",
-                 std::to_string(earth.equatorial_m) + " and " + std::to_string(earth.polar_m), ""});
-  return earth;
-}
-
-void put(Grid& grid, const char* name, double value) {
-  grid.mapping.push_back({name, "", {value}});
-}
-void put_name(Grid& grid, const char* value, const Earth& earth) {
-  grid.mapping.push_back({"grid_mapping_name", value, {}});
-  if (earth.equatorial_m == earth.polar_m) return put(grid, "earth_radius", earth.equatorial_m);
-  put(grid, "semi_major_axis", earth.equatorial_m);
-  put(grid, "semi_minor_axis", earth.polar_m);
-}
-
-[[noreturn]] void refuse(const Message& message, const std::string& found) {
-  throw Error({"a GRIB message's grid contradicts itself", message.where(),
-               "first and last points, increments and numbers of points that agree", found, ""});
-}
-
-std::string short_number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 // Degrees from `first` to `last` in `count` steps that go the way of `sign`; whole turns are found
 // by the increment. Positions by first and last: increments are rounded.
@@ -105,17 +25,18 @@ std::vector<double> degrees(const Message& message, const char* first_key, const
   const double steps = double(count - 1);
   double span = 0;
   if (count > 1) {
-    if (!last && !step) refuse(message, std::string("neither ") + last_key + " nor " + step_key);
+    if (!last && !step)
+      refuse_grid(message, std::string("neither ") + last_key + " nor " + step_key);
     span = last ? (*last - first) * sign : *step * steps;
     if (turns && last && span < 0) span += 360;
     if (last && step && *step > 0) {
       const double by_step = *step * steps, allowed = 0.5 * *step + kRounding_deg * steps;
       if (turns && std::abs(span + 360 - by_step) <= allowed) span += 360;
       if (std::abs(span - by_step) > allowed)
-        refuse(message, short_number(first) + " to " + short_number(*last) + " in " +
-                            std::to_string(count - 1) + " steps of " + short_number(*step));
+        refuse_grid(message, short_number(first) + " to " + short_number(*last) + " in " +
+                                 std::to_string(count - 1) + " steps of " + short_number(*step));
     }
-    if (!(span > 0)) refuse(message, short_number(first) + " twice");
+    if (!(span > 0)) refuse_grid(message, short_number(first) + " twice");
   }
   std::vector<double> values(count);
   for (std::size_t n = 0; n < count; ++n)
@@ -147,116 +68,9 @@ std::vector<double> parallels(const Message& message, Grid& grid) {
   const auto nearest = std::ranges::min_element(
       all, {}, [&](double latitude) { return std::abs(latitude - first); });
   if (std::size_t(all.end() - nearest) < grid.ny || std::abs(*nearest - first) > 0.5)
-    refuse(message, std::to_string(grid.ny) + " Gaussian latitudes from " + short_number(first) +
-                        " on, N = " + message.text("N"));
+    refuse_grid(message, std::to_string(grid.ny) + " Gaussian latitudes from " +
+                             short_number(first) + " on, N = " + message.text("N"));
   return {nearest, nearest + std::ptrdiff_t(grid.ny)};
-}
-
-void rotate(const Message& message, Grid& grid) {
-  grid.kind = Grid::Kind::kRotated;
-  put_name(grid, "rotated_latitude_longitude", earth_of(message));
-  const double south = message.need_number("longitudeOfSouthernPoleInDegrees");
-  put(grid, "grid_north_pole_latitude", -message.need_number("latitudeOfSouthernPoleInDegrees"));
-  put(grid, "grid_north_pole_longitude", std::remainder(south + 180, 360));
-  const double turn = message.number("angleOfRotationInDegrees").value_or(0);
-  put(grid, "north_pole_grid_longitude", 0);
-  if (turn != 0) {
-    grid.kind = Grid::Kind::kUnknown;
-    grid.why = "its rotated pole is turned by " + short_number(turn) + " degrees as well";
-  }
-}
-
-// Axes in m from the first point on.
-void map_axes(const Message& message, Grid& grid, const MapSpec& spec, const char* dx,
-              const char* dy) {
-  grid.kind = Grid::Kind::kMap;
-  const glm::dvec2 first =
-      MapProjection(spec).map_m({message.need_number("latitudeOfFirstGridPointInDegrees"),
-                                 message.need_number("longitudeOfFirstGridPointInDegrees")});
-  const double step_x = message.need_number(dx) * (grid.x_falls ? -1 : 1);
-  const double step_y = message.need_number(dy) * (grid.y_falls ? -1 : 1);
-  if (step_x == 0 || step_y == 0) refuse(message, "steps of 0 m");
-  for (std::size_t i = 0; i < grid.nx; ++i) grid.x.push_back(first.x + step_x * double(i));
-  for (std::size_t j = 0; j < grid.ny; ++j) grid.y.push_back(first.y + step_y * double(j));
-}
-
-MapSpec spec_of(const Message& message, MapKind kind) {
-  const Earth earth = earth_of(message);
-  MapSpec spec;
-  spec.kind = kind;
-  spec.equatorial_m = earth.equatorial_m;
-  spec.polar_m = earth.polar_m;
-  return spec;
-}
-
-void lambert(const Message& message, Grid& grid) {
-  MapSpec spec = spec_of(message, MapKind::kLambertConformal);
-  spec.true_latitude1_deg = message.need_number("Latin1InDegrees");
-  spec.true_latitude2_deg = message.need_number("Latin2InDegrees");
-  spec.central_longitude_deg = message.need_number("LoVInDegrees");
-  spec.origin_latitude_deg = message.number("LaDInDegrees").value_or(spec.true_latitude1_deg);
-  put_name(grid, "lambert_conformal_conic", {spec.equatorial_m, spec.polar_m});
-  grid.mapping.push_back(
-      {"standard_parallel", "", {spec.true_latitude1_deg, spec.true_latitude2_deg}});
-  put(grid, "longitude_of_central_meridian", spec.central_longitude_deg);
-  put(grid, "latitude_of_projection_origin", spec.origin_latitude_deg);
-  map_axes(message, grid, spec, "DxInMetres", "DyInMetres");
-}
-
-void mercator(const Message& message, Grid& grid) {
-  MapSpec spec = spec_of(message, MapKind::kMercator);
-  spec.true_latitude1_deg = message.need_number("LaDInDegrees");
-  spec.central_longitude_deg = message.need_number("longitudeOfFirstGridPointInDegrees");
-  put_name(grid, "mercator", {spec.equatorial_m, spec.polar_m});
-  put(grid, "standard_parallel", spec.true_latitude1_deg);
-  put(grid, "longitude_of_projection_origin", spec.central_longitude_deg);
-  map_axes(message, grid, spec, "DiInMetres", "DjInMetres");
-  if (message.number("orientationOfTheGridInDegrees").value_or(0) != 0) {
-    grid.kind = Grid::Kind::kUnknown;
-    grid.why = "its rows do not run east";
-  }
-}
-
-void polar_stereographic(const Message& message, Grid& grid) {
-  MapSpec spec = spec_of(message, MapKind::kPolarStereographic);
-  const bool south = message.integer("projectionCentreFlag").value_or(0) & 0x80;
-  const double true_latitude = std::abs(message.number("LaDInDegrees").value_or(60));
-  if (!(true_latitude > 0 && true_latitude <= 90))
-    refuse(message, "steps at latitude " + short_number(true_latitude));
-  spec.true_latitude1_deg = south ? -true_latitude : true_latitude;
-  spec.central_longitude_deg = message.need_number("orientationOfTheGridInDegrees");
-  put_name(grid, "polar_stereographic", {spec.equatorial_m, spec.polar_m});
-  put(grid, "latitude_of_projection_origin", south ? -90 : 90);
-  put(grid, "standard_parallel", spec.true_latitude1_deg);
-  put(grid, "straight_vertical_longitude_from_pole", spec.central_longitude_deg);
-  map_axes(message, grid, spec, "DxInMetres", "DyInMetres");
-}
-
-// Template 3.90: angles from the line of sight to the subsatellite point; Nr is the distance from
-// the Earth's centre in its radii, dx and dy its diameter in points.
-void space_view(const Message& message, Grid& grid) {
-  const Earth earth = earth_of(message);
-  const double distance = message.need_number("NrInRadiusOfEarth");
-  if (!(distance > 1)) refuse(message, "a camera in the Earth");
-  grid.kind = Grid::Kind::kAngles;
-  put_name(grid, "geostationary", earth);
-  put(grid, "perspective_point_height", (distance - 1) * earth.equatorial_m);
-  put(grid, "longitude_of_projection_origin",
-      message.need_number("longitudeOfSubSatellitePointInDegrees"));
-  put(grid, "latitude_of_projection_origin", 0);
-  grid.mapping.push_back({"sweep_angle_axis", "y", {}});
-  const double diameter_rad = 2 * std::asin(1 / distance);
-  const auto axis = [&](std::size_t count, const char* size, const char* centre, const char* origin,
-                        bool falls) {
-    const double step = diameter_rad / message.need_number(size);
-    const double first = message.number(origin).value_or(0) - message.need_number(centre);
-    std::vector<double> angles;
-    for (std::size_t n = 0; n < count; ++n)
-      angles.push_back((falls ? -1 : 1) * step * (first + double(n)));
-    return angles;
-  };
-  grid.x = axis(grid.nx, "dx", "XpInGridLengths", "Xo", grid.x_falls);
-  grid.y = axis(grid.ny, "dy", "YpInGridLengths", "Yo", grid.y_falls);
 }
 
 void scanning(const Message& message, Grid& grid) {
@@ -270,6 +84,12 @@ void scanning(const Message& message, Grid& grid) {
 #endif
 }
 
+// In all, where the headers say it: edition 1 counts the data.
+std::optional<long> told_points(const Message& message) {
+  if (message.need_integer("editionNumber") == 1) return {};
+  return message.integer("numberOfDataPoints");
+}
+
 // Rows of their own numbers of points, as rows of the longest.
 void reduced(const Message& message, Grid& grid) {
   const std::vector<double> points = message.numbers("pl");
@@ -277,7 +97,7 @@ void reduced(const Message& message, Grid& grid) {
   grid.ny = points.size();
   const auto total = std::accumulate(points.begin(), points.end(), 0.0);
   const bool whole_rows = !points.empty() && *std::ranges::min_element(points) > 0 &&
-                          total == double(message.integer("numberOfPoints").value_or(long(total)));
+                          total == double(told_points(message).value_or(long(total)));
   if (!whole_rows || total > kMostCells) {
     grid.why = "its rows do not go around the planet";
     return;
@@ -330,7 +150,7 @@ void find_axes(const Message& message, Grid& grid, const std::function<Message*(
   } else if (type == "polar_stereographic") {
     polar_stereographic(message, grid);
   } else if (type == "space_view") {
-    space_view(message, grid);
+    grid.why = "a satellite's view is not read from GRIB";
   } else {
     by_places(grid, whole);
   }
@@ -387,7 +207,7 @@ bool Grid::same_places(const Grid& other) const {
       if (std::abs(a[n] - b[n]) > kSamePlace * step) return false;
     return true;
   };
-  const auto same = [](const FileAttribute& a, const FileAttribute& b) {
+  const auto same = [](const forecast::FileAttribute& a, const forecast::FileAttribute& b) {
     return a.name == b.name && a.text == b.text && a.numbers == b.numbers;
   };
   return near(x, other.x) && near(y, other.y) && near(latitude_deg, other.latitude_deg) &&
@@ -412,8 +232,11 @@ Grid grid_of(const Message& message, const std::function<Message*()>& whole) {
   grid.nx = std::size_t(std::max(0l, nx));
   grid.ny = std::size_t(std::max(0l, ny));
   const bool is_reduced = grid.type.starts_with("reduced");
-  if (!is_reduced && (nx < 1 || ny < 1 || double(nx) * double(ny) > kMostCells))
-    refuse(message, std::to_string(nx) + " x " + std::to_string(ny) + " points");
+  const long points = told_points(message).value_or(nx * ny);
+  if (!is_reduced &&
+      (nx < 1 || ny < 1 || double(nx) * double(ny) > kMostCells || nx * ny != points))
+    refuse_grid(message, std::to_string(points) + " points in all, " + std::to_string(nx) + " x " +
+                             std::to_string(ny) + " points");
   if (message.integer("scanningMode").value_or(0) & 0x0f) {
     grid.why = "its rows are shifted by half a step";
     return grid;
@@ -421,7 +244,7 @@ Grid grid_of(const Message& message, const std::function<Message*()>& whole) {
   find_axes(message, grid, whole);
 #ifndef NEPHO_MUTANT_UNREVERSED
   if (grid.kind == Grid::Kind::kLatLon || grid.kind == Grid::Kind::kRotated ||
-      grid.kind == Grid::Kind::kMap || grid.kind == Grid::Kind::kAngles) {
+      grid.kind == Grid::Kind::kMap) {
     if (grid.x_falls) std::ranges::reverse(grid.x);
     if (grid.y_falls) std::ranges::reverse(grid.y);
   }

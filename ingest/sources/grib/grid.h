@@ -16,8 +16,7 @@ struct Grid {
     kLatLon,   // x: degrees east, y: degrees north
     kRotated,  // likewise of a rotated pole
     kMap,      // m
-    kAngles,   // rad, of a satellite's view
-    kPlaces,   // latitude_deg and longitude_deg for each cell, in ecCodes's order
+    kPlaces,   // latitude_deg and longitude_deg for each cell
     kCells,    // triangles and the like: no rows; x holds nothing
     kUnknown   // not to be read: `why`
   };

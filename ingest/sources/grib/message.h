@@ -31,10 +31,10 @@ class Message {
   // Unpacked, in the message's own order; NaN where a value is missing. Throws Error on damage, and
   // on packings that this build of ecCodes cannot read.
   std::vector<double> values() const;
-  // Values with their places, in ecCodes's order of points rather than the message's; for grids
-  // that no map of ours tells. Empty where it cannot.
+  // Of all points, as ecCodes works them out, for grids that no map of ours tells: in the message's
+  // order where that runs along rows, east and north. Empty where it cannot.
   struct Places {
-    std::vector<double> latitude_deg, longitude_deg, value;
+    std::vector<double> latitude_deg, longitude_deg;
   };
   Places places() const;
 

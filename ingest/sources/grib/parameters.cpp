@@ -184,7 +184,11 @@ constexpr std::array kLevels1 = {NamedLevel{1, LevelKind::kSurface, "surface"},
                                  NamedLevel{109, LevelKind::kHybrid, "hybrid"},
                                  NamedLevel{110, LevelKind::kHybrid, "hybridLayer"}};
 
+#ifdef NEPHO_MUTANT_UNITS_HPA
+constexpr double kPaPerHpa = 1;
+#else
 constexpr double kPaPerHpa = 100;
+#endif
 
 }  // namespace
 
@@ -241,6 +245,7 @@ Parameter parameter_of(const Message& message, const Level& level) {
     p.units = row->units;
     p.known = true;
     p.water = row->water && is_vertical(level.kind);
+    p.constant = p.name == "clat" || p.name == "clon";
     if (row->water && !p.water) p.name += "_" + level.name;  // a column's, or a cloud top's
     if (p.name == "lnsp") {                                  // on level 1, as ECMWF writes it
       p.name = "sp";

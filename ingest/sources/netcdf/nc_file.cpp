@@ -14,7 +14,7 @@
 #include "api/module_support.h"
 #include "core/error.h"
 #include "sources/netcdf/classic_size.h"
-#include "sources/netcdf/survives.h"
+#include "forecast/files/survives.h"
 
 namespace nepho::netcdf {
 namespace {
@@ -127,7 +127,7 @@ NcFile::NcFile(std::string path, IoLock io_lock) : DataFile(std::move(path)), io
   };
   locked([&] {
     // Elsewhere first, all of it: much of the headers is read only when it is asked for.
-    if (is_hdf5(path_) && !survives([&] { open(), nc_close(id_); }))
+    if (is_hdf5(path_) && !forecast::survives([&] { open(), nc_close(id_); }))
       throw Error({"netCDF cannot read the file", path_, "an intact netCDF file",
                    "headers that the HDF5 library breaks down on",
                    "it is damaged: write or copy it again"});

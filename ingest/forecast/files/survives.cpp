@@ -1,4 +1,4 @@
-#include "sources/netcdf/survives.h"
+#include "forecast/files/survives.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -8,19 +8,17 @@
 #include <cerrno>
 #include <csignal>
 
-namespace nepho::netcdf {
+namespace nepho::forecast {
 namespace {
 
-constexpr unsigned kPatience_s = 10;
-
 // Never returns to the caller's stack: no destructors, no streams, no files of the parent.
-[[noreturn]] void run_and_exit(const std::function<void()>& action) {
+[[noreturn]] void run_and_exit(const std::function<void()>& action, unsigned patience_s) {
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGALRM})
     std::signal(signal, SIG_DFL);
   const rlimit none{0, 0};
   setrlimit(RLIMIT_CORE, &none);
   if (const int dark = ::open("/dev/null", O_WRONLY); dark >= 0) dup2(dark, STDERR_FILENO);
-  alarm(kPatience_s);
+  alarm(patience_s);
   try {
     action();
   } catch (...) {  // the parent meets it again
@@ -30,9 +28,9 @@ constexpr unsigned kPatience_s = 10;
 
 }  // namespace
 
-bool survives(const std::function<void()>& action) {
+bool survives(const std::function<void()>& action, unsigned patience_s) {
   const pid_t child = fork();
-  if (child == 0) run_and_exit(action);
+  if (child == 0) run_and_exit(action, patience_s);
   if (child < 0) return true;
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
@@ -40,4 +38,4 @@ bool survives(const std::function<void()>& action) {
   return !WIFSIGNALED(status);
 }
 
-}  // namespace nepho::netcdf
+}  // namespace nepho::forecast
