@@ -108,7 +108,7 @@ ErrorScene from_space() {
 }
 
 double thin_clumps_per_m(const glm::dvec3& p) {
-  return 0.8 * cloud(0.005 * p) + 0.15 * puffs(0.001 * p);
+  return 0.15 * cloud(0.003 * p);
 }
 double haze_per_m(const glm::dvec3& p) {
   return 1e-3 * std::exp(-p.z / 300) * (1 + 0.3 * std::sin(p.x / 90));

@@ -11,8 +11,8 @@ constexpr double kToleranceStep = 0.31622776601683794;  // a root of ten
 constexpr double kBudgetStep = 4;
 constexpr double kSame = 0.85;          // of the error before: no progress to speak of
 constexpr double kNothingFiner = 0.02;  // of integration: bricks are as fine as the data
-constexpr double kFar = 8;              // errors so many times the target take two steps at once
-constexpr std::size_t kLongest = 24;    // settings tried; the ladder has no more
+constexpr double kFar = 8;  // errors so many times the target take two steps of memory at once
+constexpr std::size_t kLongest = 24;  // settings tried; the ladder has no more
 
 // Whether the last step was one of tolerance alone and left the integration error as it was.
 bool stuck(const TargetMeasure& before, const TargetMeasure& after) {
@@ -29,13 +29,13 @@ std::size_t least_error(const std::vector<TargetMeasure>& tried) {
 
 }  // namespace
 
-std::optional<TargetSetting> next_setting(std::span<const TargetMeasure> walk, bool far) {
+std::optional<TargetSetting> next_setting(std::span<const TargetMeasure> walk, Haste haste) {
   const TargetMeasure& last = walk.back();
   TargetSetting next = last.setting;
   const auto finer_bricks = [&] {
     if (last.budget_bound) {
-      next.budget_mib =
-          std::min(next.budget_mib * std::pow(kBudgetStep, far ? 2 : 1), kMostBudget_mib);
+      next.budget_mib = std::min(
+          next.budget_mib * std::pow(kBudgetStep, haste == Haste::kBoth ? 2 : 1), kMostBudget_mib);
       return next.budget_mib > last.setting.budget_mib;
     }
     if (last.level_of_detail <= kNothingFiner * last.integration ||
@@ -47,8 +47,9 @@ std::optional<TargetSetting> next_setting(std::span<const TargetMeasure> walk, b
   const std::size_t n = walk.size();
   const bool stuck_once = n >= 2 && stuck(walk[n - 2], last);
   const auto smaller_tolerance = [&] {
-    next.tolerance = std::max(next.tolerance * std::pow(kToleranceStep, far || stuck_once ? 2 : 1),
-                              kLeastTolerance);
+    next.tolerance = std::max(
+        next.tolerance * std::pow(kToleranceStep, haste != Haste::kNone || stuck_once ? 2 : 1),
+        kLeastTolerance);
     return next.tolerance < last.setting.tolerance;
   };
   if (last.level_of_detail >= last.integration) {
@@ -78,7 +79,8 @@ TargetChoice search_error(double target, const TargetSetting& first,
       choice.met = true;
       return choice;
     }
-    const auto next = next_setting(choice.tried, error > kFar * target);
+    const auto next =
+        next_setting(choice.tried, error > kFar * target ? Haste::kBoth : Haste::kTolerance);
     if (!next || choice.tried.size() == kLongest) break;
     choice.tried.push_back(measure(*next));
   }

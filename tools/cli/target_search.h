@@ -38,9 +38,15 @@ inline constexpr double kErrorMargin = 0.7;
 
 // The next setting of a walk: more memory, then finer voxels, where level of detail is the larger
 // error; otherwise a smaller tolerance, unless two of those in a row changed next to nothing: what
-// is left is then light between voxels, which finer bricks cure. `far`: twice as far at once. None
-// where nothing finer is left that would help.
-std::optional<TargetSetting> next_setting(std::span<const TargetMeasure> walk, bool far = false);
+// is left is then light between voxels, which finer bricks cure. None where nothing finer is left
+// that would help. A tolerance that is too small costs less than another setting tried.
+enum class Haste {
+  kNone,       // tolerances by a root of ten, memory by four
+  kTolerance,  // tolerances by ten
+  kBoth,       // and memory by sixteen
+};
+std::optional<TargetSetting> next_setting(std::span<const TargetMeasure> walk,
+                                          Haste haste = Haste::kNone);
 
 // The first setting of the walk whose error is below kErrorMargin of the target (relative). Not
 // met: the one with the least error.
