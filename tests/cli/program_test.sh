@@ -26,7 +26,7 @@ version_and_help() {
   nephoscope render --help >r.txt
   for option in size look-from look-at fov sun budget-mib step tolerance fetch seed frame fps \
     density-scale up metres-per-unit grid light exposure explain explain-all at heading pitch view time \
-    no-planet force region engine spp noise levels host-mib exact-orders; do
+    no-planet force region engine spp noise levels host-mib exact-orders target-error target-ms; do
     has r.txt "^ *(-o,)?--$option"
   done
   nephoscope compare --help >c.txt
@@ -61,6 +61,40 @@ render_repeats_from_its_metadata() {
   # A changed option is another picture: the comparison above can fail.
   nephoscope render in/one.ppm --sun 200,40 -o three.ppm >/dev/null
   nephoscope compare in/one.ppm three.ppm >differ.txt && has differ.txt 'not the same pixels'
+}
+
+targets_choose_settings() {
+  sphere in/s.json
+  nephoscope render in/s.json --target-error 10% -o e.ppm >e.txt
+  has e.txt '^target: error 10 %: tolerance [0-9.e-]+, [0-9]+ MiB, [0-9.]+ pixels a voxel give [0-9.]+ %'
+  has e.txt "the light model's [0-9]+ % is beside it"
+  # What was chosen is the picture's scene: the same bits again, and no target in it.
+  nephoscope info e.ppm >i.txt && has i.txt '"tolerance"'
+  ! grep -q '"target_error"' i.txt || fail "the target stayed in the scene"
+  nephoscope render e.ppm -o again.ppm >/dev/null
+  nephoscope compare e.ppm again.ppm >same.txt && has same.txt 'bit for bit'
+  nephoscope render in/s.json --target-ms 1e8 -o t.ppm >t.txt
+  has t.txt '^target: frame 1e.08 ms: .* ms of [CG]PU time for light passes and view'
+  # Too short for any: a picture all the same, and the time that it takes.
+  nephoscope render in/s.json --target-ms 0.001 -o u.ppm >u.txt 2>u.err
+  has u.txt '^target: frame 0.001 ms is not met: '
+  has u.err 'warning: --target-ms 0.001 is not met: the fastest setting takes [0-9.]+ ms'
+  refuses() {
+    status=$1 reason=$2 && shift 2
+    code=0 && nephoscope "$@" >/dev/null 2>no.txt || code=$?
+    [ "$code" = "$status" ] || fail "exit $code: $*"
+    has no.txt "$reason"
+  }
+  for target in 0 -1% 0.001% 300%; do
+    refuses 1 "from 0.0001 to 1" render in/s.json "--target-error=$target" -o no.ppm
+  done
+  refuses 1 'at least 0.26 %, the rounding of 8 bits.*write .exr or .pfm: 0.01 %' \
+    render in/s.json --target-error 0.1% -o no.ppm
+  refuses 1 'probe-pixels' render in/s.json --target-error 1% --probe-pixels 0 -o no.ppm
+  refuses 1 'engine march' render in/s.json --target-error 1% --engine reference -o no.ppm
+  refuses 2 'excludes' render in/s.json --target-error 1% --tolerance 0.1 -o no.ppm
+  refuses 2 'excludes' render in/s.json --target-ms 5 --budget-mib 4 -o no.ppm
+  refuses 2 'excludes' render in/s.json --target-ms 5 --target-error 1% -o no.ppm
 }
 
 frames_and_exposes_by_itself() {
