@@ -1,6 +1,7 @@
 // The report of made-up results: read back, and checked as XML.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <stdexcept>
 
 #include "bench/csv.h"
+#include "bench/markdown.h"
 #include "bench/page.h"
 #include "bench/pareto.h"
 #include "bench/text.h"
@@ -168,12 +170,27 @@ TEST(Report, the_chart_holds_every_setting_and_the_light_model) {
   const auto pareto = pareto_of(scene);
   ASSERT_TRUE(pareto);
   EXPECT_EQ(pareto->chart.points.size(), 6u);
-  EXPECT_EQ(pareto->chart.series, (std::vector<std::string>{"8", "16", "32"}));
+  EXPECT_EQ(pareto->chart.series, (std::vector<std::string>{"0.5", "1"}));
+  EXPECT_EQ(pareto->chart.points[2].label, "32");
   ASSERT_EQ(pareto->chart.levels.size(), 1u);
   EXPECT_EQ(pareto->chart.levels[0].y, 0.5);
   // step 1 with 8, the cheapest, comes first.
   EXPECT_EQ(pareto->front.front(), 3u);
   EXPECT_NE(lesson_of(scene, *pareto).find("The light model adds 50 %"), std::string::npos);
+}
+
+TEST(Report, an_axis_of_one_value_is_no_axis_of_the_chart) {
+  SceneResult scene = made("one");
+  std::erase_if(scene.settings,
+                [](const SettingResult& s) { return s.setting.value("step") != "1"; });
+  EXPECT_EQ(scene.varied(), (std::vector<std::string>{"budget-mib"}));
+  const auto pareto = pareto_of(scene);
+  EXPECT_TRUE(pareto->chart.series.empty());
+  EXPECT_EQ(pareto->chart.points[0].label, "8");
+  const std::string table = markdown_of(scene);
+  EXPECT_EQ(table.find("step"), table.find("steps"));  // the term, not the setting
+  EXPECT_NE(table.find("| 8 | 8 s |"), std::string::npos) << table;
+  EXPECT_EQ(std::ranges::count(table, '\n'), 5);
 }
 
 TEST(Report, withheld_points_are_not_drawn) {

@@ -16,9 +16,11 @@
 
 namespace nepho::bench {
 
+inline constexpr std::uint32_t kLeastPaths = 8;  // a pixel: a standard error of fewer is none
+
 struct ReferenceGoals {
   double finest_step_voxels = 1.0 / 16;  // of the march that steps are measured against
-  std::uint32_t most_paths = 4096;       // a pixel; 0: no path tracing
+  std::uint32_t most_paths = 4096;       // a pixel, at least kLeastPaths; 0: no path tracing
   double host_mib = 1024;                // memory for the finest bricks
 };
 
