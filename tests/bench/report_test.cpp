@@ -122,7 +122,8 @@ TEST(Report, csv_of_settings_is_read_back) {
 TEST(Report, csv_of_terms_says_why_a_number_is_missing) {
   const std::vector<SceneResult> scenes{made("one")};
   const Table table = parse_csv(terms_csv(scenes));
-  ASSERT_EQ(table.size(), 1 + 6 * 8u);
+  ASSERT_EQ(table.size(), 1 + 6 * 8u + 1);
+  EXPECT_EQ(table.back()[column(table, "term")], "data: volume & co");
   for (const auto& row : table) {
     ASSERT_EQ(row.size(), table[0].size());
     if (row[column(table, "term")] != kQuantisation) continue;
@@ -130,6 +131,15 @@ TEST(Report, csv_of_terms_says_why_a_number_is_missing) {
     EXPECT_EQ(row[column(table, "not above [1]")], "0.25");
     EXPECT_EQ(row[column(table, "withheld")], "a \"reason\", with a comma");
   }
+}
+
+TEST(Report, csv_of_orders_is_read_back) {
+  const Table table = parse_csv(orders_csv({made("one")}));
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table[1],
+            (std::vector<std::string>{"one", "step", "budget-mib 8", "2", "0.1", "3", ""}));
+  EXPECT_EQ(table[2][column(table, "order [1]")], "");
+  EXPECT_EQ(table[2][column(table, "not fitted")], "too few < 3");
 }
 
 TEST(Report, the_front_is_what_nothing_beats) {

@@ -291,7 +291,7 @@ bench_reports() {
   has b.txt '^report/index\.html$'
   has progress.txt '^bench: t: step 4, max-level 2, run 5 of 5, about [0-9]+ s left$'
   ls -A report >files.txt
-  printf '%s\n' bench.csv index.html pareto-s.svg pareto-t.svg tables.md terms.csv >expected.txt
+  printf '%s\n' bench.csv index.html orders.csv pareto-s.svg pareto-t.svg tables.md terms.csv >expected.txt
   cmp files.txt expected.txt || { cat files.txt; fail "other files than those of a report"; }
   # A row for each scene and setting, as many fields as the header has.
   awk -F, 'NR == 1 { n = NF } NF != n { exit 1 } END { exit NR != 13 }' report/bench.csv ||

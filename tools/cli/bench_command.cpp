@@ -163,6 +163,7 @@ void write_report(const std::vector<bench::SceneResult>& results, const BenchOpt
       [&](const ByteImage& image) { return png ? folder.png_of(image, pictures) : std::string(); });
   folder.write("bench.csv", bench::settings_csv(results));
   folder.write("terms.csv", bench::terms_csv(results));
+  folder.write("orders.csv", bench::orders_csv(results));
   std::string tables;
   for (const bench::SceneResult& result : results)
     tables += "### " + result.name + "\n\n" + bench::markdown_of(result) + "\n";
