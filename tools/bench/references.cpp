@@ -27,13 +27,6 @@ std::uint64_t node_count(const Forest& forest) {
   return nodes;
 }
 
-// The estimate of a step goes by its ends; in voxels of optical depth 1 it left 0.5 % of a picture
-// at 1e-4, with a cell in four 0.03 %.
-constexpr MarchSettings kMarchSettings{
-    .source_tolerance = 2.5e-5, .least_transmittance = 1e-6, .least_halvings = 2};
-constexpr MarchSettings kStricterMarch{
-    .source_tolerance = 1.25e-5, .least_transmittance = 1e-7, .least_halvings = 3};
-
 // Without an end of finer levels that a machine could hold.
 bool is_endless(const RenderRequest& request) {
   return std::ranges::any_of(request.volumes, [](const RenderVolume& volume) {
@@ -130,7 +123,7 @@ HdrImage References::march(const LevelSet& levels, const RenderRequest& request,
                            const std::string& what) {
   progress_.begin(Work::kMarch, what);
   const double pixels = double(request.settings.width) * request.settings.height;
-  const RayMarch march(levels, request, kMarchSettings, planet_);
+  const RayMarch march(levels, request, kReferenceMarch, planet_);
   HdrImage image = march_picture(
       march, request, [&](std::size_t done) { progress_.within(double(done) / pixels); });
   progress_.end();
