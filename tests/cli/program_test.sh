@@ -29,6 +29,10 @@ version_and_help() {
     no-planet force region engine spp noise levels host-mib exact-orders target-error target-ms; do
     has r.txt "^ *(-o,)?--$option"
   done
+  nephoscope bench --help >b.txt
+  for option in sweep size repeat spp exact-orders host-mib finest-step; do
+    has b.txt "^ *--$option "
+  done
   nephoscope compare --help >c.txt
   for option in diff diff-of diff-scale exposure tone-map pixels-per-degree json; do
     has c.txt "^ *--$option "
@@ -310,6 +314,53 @@ compare_maps_differences() {
     fail "map of mean $measured, printed $printed"
   nephoscope compare b.pfm a.pfm --pixels-per-degree 20 --json >n.json
   if cmp -s c.json n.json; then fail "the distance of the eye changes nothing"; fi
+}
+
+bench_reports() {
+  sphere in/s.json
+  sphere in/t.json '"sun": {"azimuth_deg": 120, "elevation_deg": 30}'
+  nephoscope bench in/s.json in/t.json --sweep step=1,2,4 --sweep max-level=1,2 --size 16x9 --spp 0 \
+    -o report >b.txt 2>progress.txt
+  has b.txt '^s: step 1, max-level 1: frame [0-9.]+ m?s CPU, error [0-9.]+ %$'
+  has b.txt '^report/index\.html$'
+  has progress.txt '^bench: t: step 4, max-level 2, run 5 of 5, about [0-9]+ s left$'
+  ls -A report >files.txt
+  printf '%s\n' bench.csv index.html orders.csv pareto-s.svg pareto-t.svg tables.md terms.csv >expected.txt
+  cmp files.txt expected.txt || { cat files.txt; fail "other files than those of a report"; }
+  # A row for each scene and setting, as many fields as the header has.
+  awk -F, 'NR == 1 { n = NF } NF != n { exit 1 } END { exit NR != 13 }' report/bench.csv ||
+    fail "bench.csv is no table of 12 settings"
+  has report/bench.csv '^scene,step \[voxels\],max-level,runs \[1\],'
+  has report/index.html 'no GPU time: the OpenGL device is a rasteriser on the CPU|GPU.s own clock'
+  has report/index.html 'order -?[0-9.]+, standard error [0-9.]+, from 3 points|not fitted'
+  # One scene: one chart. What was there is replaced.
+  nephoscope bench in/s.json --size 16x9 --spp 0 -o report >b.txt 2>/dev/null
+  has b.txt '^s: as the scene says: frame ' && [ -f report/pareto.svg ] || fail "no chart"
+}
+
+bench_refuses() {
+  sphere in/s.json
+  refused() {  # refused WORDS OPTIONS...
+    words=$1 && shift
+    if nephoscope bench in/s.json --size 16x9 "$@" -o new >b.txt 2>err.txt; then
+      fail "took $*"
+    fi
+    has err.txt "$words"
+    [ ! -e new ] || fail "$*: left a folder behind"
+  }
+  refused 'no such setting.*step \(voxels\), tolerance, budget-mib' --sweep stepp=1,2
+  refused 'an empty range' --sweep step=
+  refused 'a value is missing' --sweep step=1,,2
+  refused 'exclude each other' --sweep step=1 --sweep tolerance=0.1
+  refused 'swept twice' --sweep step=1 --sweep step=2
+  refused 'a whole number from 5' --repeat 4
+  refused 'a whole number from 0' --spp -1
+  refused 'fewer than 8' --spp 7
+  # Nothing but noise: octaves are judged by paths, and two are none.
+  refused 'no reference is good enough.*paths.*\(--spp\)' --sweep octaves=7,8 --spp 8
+  : >plain
+  if nephoscope bench in/s.json -o plain >b.txt 2>err.txt; then fail "wrote into a file"; fi
+  has err.txt 'plain: cannot write'
 }
 
 "$claim"
