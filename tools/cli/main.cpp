@@ -98,7 +98,7 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--budget-mib", o.budget_mib, "memory on the GPU (256)")->group(group);
   CLI::Option* step =
       command.add_option("--step", o.step_voxels, "fixed step in voxels; 0 = exact per cell");
-  command.add_option("--tolerance", o.tolerance, "relative error that a step may make (0.01)")
+  command.add_option("--tolerance", o.tolerance, "relative error of the integration, of 99 % of the pixels (0.01)")
       ->excludes(step)
       ->group(group);
   step->group(group);
