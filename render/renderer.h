@@ -36,6 +36,8 @@ struct RenderRequest {
   bool march_all_light = false;
   bool keep_lights = false;    // for tests: RenderResult::lights
   bool count_samples = false;  // for tests: RenderReport::samples
+  // For tests: of the light passes, so that pictures of unlike steps have the same light.
+  std::optional<double> light_step_voxels = {};
 };
 
 // Linear HDR, row 0 at the top: radiance r, g, b (W m-2 sr-1 nm-1) and the view optical depth.
@@ -83,7 +85,7 @@ struct RenderResult {
   HdrImage image;
   ErrorEstimate error;
   RenderReport report;
-  std::shared_ptr<const LightTiles> lights;  // where they were to be kept
+  std::shared_ptr<const LightTiles> lights = {};  // where they were to be kept
 };
 
 // Needs a current OpenGL 4.5 core context. Throws Error where GL refuses or the budget is too small

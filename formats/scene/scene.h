@@ -106,8 +106,8 @@ struct PathGoals {
 struct RenderSettings {
   int width = 640, height = 360;
   double budget_mib = 256;
-  // Exactly one rules the march: a fixed step in voxels, or the relative error that a step may
-  // make. step_voxels = 0: the cell-exact reference setting.
+  // Exactly one rules the march: a fixed step in voxels, or the relative error of the integration
+  // along view rays that 99 % of the pixels keep below. step_voxels = 0: the cell-exact reference setting.
   std::optional<double> step_voxels;
   double tolerance = 1e-2;
   std::optional<Fetch> fetch;  // absent: kFilter, or kTexels8 where the tolerance is below 2e-3

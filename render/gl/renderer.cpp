@@ -148,7 +148,8 @@ std::string Renderer::defines(bool lit) const {
   if (lit) define("LIT");
   if (request_.count_samples) define("COUNT_SAMPLES");
   if (planet_) text += planet_->defines();
-  define("SUN_STEP", std::to_string(s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0));
+  const double own_step = s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0;
+  define("SUN_STEP", std::to_string(request_.light_step_voxels.value_or(own_step)));
 #ifdef NEPHO_MUTANT_SHADER  // tests: one planted mistake, by name
   define(NEPHO_MUTANT_SHADER);
 #endif

@@ -23,8 +23,9 @@ Number exp_e0(Number x) {
 
 // (1 - (1 + x) e^-x) / x^2 for x >= 0: the weight of the source's rise over the step. Series
 // sum (n + 1) (-x)^n / (n + 2)!, as above. Relative error 2e-6.
-Number exp_w1(Number x) {
-  if (x >= Number(1.0)) return (Number(1.0) - (Number(1.0) + x) * exp(-x)) / x / x;
+// `through` is e^-x, where it is known.
+Number exp_w1_through(Number x, Number through) {
+  if (x >= Number(1.0)) return (Number(1.0) - (Number(1.0) + x) * through) / x / x;
   Number s = Number(1.0) - x * Number(12.0 / 143.0);
   s = Number(1.0) - x * Number(11.0 / 120.0) * s;
   s = Number(1.0) - x * Number(10.0 / 99.0) * s;
@@ -36,6 +37,9 @@ Number exp_w1(Number x) {
   s = Number(1.0) - x * Number(4.0 / 15.0) * s;
   s = Number(1.0) - x * Number(3.0 / 8.0) * s;
   return Number(0.5) - x * Number(1.0 / 3.0) * s;
+}
+Number exp_w1(Number x) {
+  return exp_w1_through(x, exp(-x));
 }
 
 // Optical depth between two samples and the one half-way: exact where extinction is a cubic along

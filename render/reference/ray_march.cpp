@@ -69,7 +69,10 @@ Ray camera_ray(const Camera& camera, int width, int height, int x, int y) {
 
 RayMarch::RayMarch(const LevelSet& levels, const RenderRequest& request, MarchSettings settings,
                    std::shared_ptr<const PlanetModel> planet)
-    : levels_(levels), request_(request), settings_(std::move(settings)), planet_(std::move(planet)) {
+    : levels_(levels),
+      request_(request),
+      settings_(std::move(settings)),
+      planet_(std::move(planet)) {
   if (request.planet && !planet_) planet_ = std::make_shared<const PlanetModel>(request, nullptr);
   const Sky& sky = request.sky;
   sky_lights_ = planet_ ? planet_->has_air()

@@ -209,8 +209,7 @@ void RayMarch::Trace::add_looked_up(const End& first, const End& last, const glm
         f64::step_radiance(s0[c], sm[c], x1) + std::exp(-x1) * f64::step_radiance(sm[c], s1[c], x2);
   }
   const double error = passed() * luminance(glm::abs(halves - whole));
-  const double scale =
-      luminance(result_.radiance_W_per_m2_sr_nm) + passed() * luminance(halves);
+  const double scale = luminance(result_.radiance_W_per_m2_sr_nm) + passed() * luminance(halves);
   if (halvings < kMaxHalvings && error > march_.settings_.source_tolerance * scale) {
     add_looked_up(first, middle, s0, sm, halvings + 1);
     add_looked_up(middle, last, sm, s1, halvings + 1);

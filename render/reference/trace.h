@@ -35,8 +35,8 @@ class RayMarch::Trace {
   glm::dvec3 air_depth(const End& first, const End& last) const;
   void add_air(double t_m);
   void add_step(const End& first, const End& last, int halvings);
-  void add_looked_up(const End& first, const End& last, const glm::dvec3& s0,
-                     const glm::dvec3& s1, int halvings);
+  void add_looked_up(const End& first, const End& last, const glm::dvec3& s0, const glm::dvec3& s1,
+                     int halvings);
   bool too_curved(double s0, double s1, double weight, double most) const;
   glm::dvec3 source(const End& end) const;
   Light light_of(std::size_t volume, const End& end) const;

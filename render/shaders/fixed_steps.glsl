@@ -38,7 +38,9 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
 #ifdef NEPHO_COUNT_SAMPLES
       source_count += 1u;
 #endif
-      if (!march.fresh) add_step(seen, linear_light(march.s0, s1, tau), tau, t, step_m);
+      float through = exp(-tau), mean;
+      vec3 light = linear_light(march.s0, s1, tau, through, mean);
+      if (!march.fresh) add_step(seen, light, tau, through, mean, t, step_m);
       // No more than what would be refused were extinction to stay; not where it is about to begin.
       march.longest = 2.0 * step_m;
       if (march.fresh) march.longest = FAR;

@@ -39,20 +39,20 @@ float passed(Seen seen) { return most_of(seen.transmittance); }
 #endif
 #include "lights.glsl"
 
-// A step of cloud: its own light and optical depth; air in front of and behind it, half each
+// A step of cloud: its own light and optical depth, the transmittance at its end and its mean; air in front of and behind it, half each
 // (Strang's splitting).
-void add_step(inout Seen seen, vec3 light, float tau, float t, float step_m) {
+void add_step(inout Seen seen, vec3 light, float tau, float through, float mean, float t, float step_m) {
 #ifdef NEPHO_AIR
   vec3 weights = span_weights(t + 0.5 * step_m);
   vec3 half_way = exp(-(0.5 * step_m) * air_extinction(weights));
   seen.transmittance *= half_way;
-  seen.radiance += seen.transmittance * step_m * exp_e0(tau) * air_emission_at(weights);
+  seen.radiance += seen.transmittance * step_m * mean * air_emission_at(weights);
 #endif
   seen.radiance += seen.transmittance * light;
 #ifdef NEPHO_MUTANT_EULER
   seen.transmittance *= max(1.0 - tau, 0.0);
 #else
-  seen.transmittance *= exp(-tau);
+  seen.transmittance *= through;
 #endif
 #ifdef NEPHO_AIR
   seen.transmittance *= half_way;
@@ -61,8 +61,10 @@ void add_step(inout Seen seen, vec3 light, float tau, float t, float step_m) {
 }
 
 // Of a step whose source is linear in optical depth.
-vec3 linear_light(vec3 s0, vec3 s1, float tau) {
-  return tau * (s0 * exp_e0(tau) + (s1 - s0) * exp_w1(tau));
+vec3 linear_light(vec3 s0, vec3 s1, float tau, float through, out float mean) {
+  float rise = exp_w1_through(tau, through);
+  mean = through + tau * rise;  // e0, and no difference of like numbers
+  return tau * (s0 * mean + (s1 - s0) * rise);
 }
 
 // Where the march through cloud is: extinction and source at its last place, and the step that is

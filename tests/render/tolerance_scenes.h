@@ -109,10 +109,10 @@ inline MarchScene thick_slab() {
     return 0.1 * samples::smooth_step(150, 200, p.z) * (1 - samples::smooth_step(700, 750, p.z)) *
            (1 + 0.3 * std::sin(p.x / 160) * std::cos(p.y / 160));
   };
-  return march_scene("thick slab",
-                     {field_in_box(1005, 1000, Lattice({kSplitXyz, kSplitXyz}), field,
-                                   {true, true})},
-                     {0, -900, 1500}, {0, 200, 650}, 0.8);
+  return march_scene(
+      "thick slab",
+      {field_in_box(1005, 1000, Lattice({kSplitXyz, kSplitXyz}), field, {true, true})},
+      {0, -900, 1500}, {0, 200, 650}, 0.8);
 }
 
 // Streaks of ice that lean with the wind, of optical depth 0.02 to 0.5, against a bright sky.
@@ -160,16 +160,17 @@ inline MarchScene cloud_in_haze() {
   const auto haze = [](glm::dvec3 p) {
     return 1e-3 * std::exp(-p.z / 300) * (1 + 0.3 * std::sin(p.x / 90));
   };
-  MarchScene scene = march_scene("cloud in haze",
-                                 {field_in_box(1000, 1000, isotropic(3), clumps),
-                                  field_in_box(1400, 700, isotropic(2), haze)},
-                                 {-700, -1500, 600}, {0, 0, 480}, 0.75);
+  MarchScene scene = march_scene(
+      "cloud in haze",
+      {field_in_box(1000, 1000, isotropic(3), clumps), field_in_box(1400, 700, isotropic(2), haze)},
+      {-700, -1500, 600}, {0, 0, 480}, 0.75);
   light_by_sky(scene);
   return scene;
 }
 
-inline const std::vector<std::pair<std::string, std::function<MarchScene()>>>& march_scenes() {
-  static const std::vector<std::pair<std::string, std::function<MarchScene()>>> scenes = {
+using MakeMarchScene = std::function<MarchScene()>;
+inline const std::vector<std::pair<std::string, MakeMarchScene>>& march_scenes() {
+  static const std::vector<std::pair<std::string, MakeMarchScene>> scenes = {
       {"smooth ball", smooth_ball},       {"plume", plume},
       {"ragged noise", ragged_noise},     {"cumulus field", cumulus_field},
       {"thick slab", thick_slab},         {"thin cirrus", thin_cirrus},

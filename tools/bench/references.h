@@ -19,9 +19,9 @@ namespace nepho::bench {
 
 // The march's estimate of a step goes by its ends: in voxels of optical depth 1 it leaves 0.5 % of
 // a picture at its usual tolerance, and with a cell in four below 0.1 %.
-inline constexpr MarchSettings kReferenceMarch{
+inline const MarchSettings kReferenceMarch{
     .source_tolerance = 2.5e-5, .least_transmittance = 1e-6, .least_halvings = 2};
-inline constexpr MarchSettings kStricterMarch{
+inline const MarchSettings kStricterMarch{
     .source_tolerance = 1.25e-5, .least_transmittance = 1e-7, .least_halvings = 3};
 
 inline constexpr std::uint32_t kLeastPaths = 8;  // a pixel: a standard error of fewer is none

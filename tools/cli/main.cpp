@@ -35,7 +35,8 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope compare a.exr b.exr --diff apart.png        and where (FLIP)
   nephoscope bench scene.json --sweep step=0.5,1,2 --sweep budget-mib=64,256 -o report)";
 
-constexpr const char* kRegion = "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF, GRIB)";
+constexpr const char* kRegion =
+    "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF, GRIB)";
 
 void start_logging() {
   auto logger = spdlog::stderr_logger_mt("nephoscope");
@@ -106,7 +107,9 @@ void add_quality_options(CLI::App& command, RenderOptions& o) {
   CLI::Option* step =
       command.add_option("--step", o.step_voxels, "fixed step in voxels; 0 = exact per cell");
   CLI::Option* tolerance =
-      command.add_option("--tolerance", o.tolerance, "relative error that a step may make (0.01)")
+      command
+          .add_option("--tolerance", o.tolerance,
+                      "relative error of the integration, of 99 % of the pixels (0.01)")
           ->excludes(step)
           ->group(group);
   step->group(group);
@@ -207,7 +210,8 @@ int run(int argc, char** argv) {
   add_data_options(*draw, render.grid, render.up, render.metres_per_unit, render.density_scale,
                    render.frame);
   draw->add_option("--fps", render.fps, "frames per second of a sequence (24)")->group("Data");
-  draw->add_flag("--force", render.force, "draw values that no cloud has (NetCDF, GRIB)")->group("Data");
+  draw->add_flag("--force", render.force, "draw values that no cloud has (NetCDF, GRIB)")
+      ->group("Data");
   draw->add_option("--region", render.region, kRegion)->group("Data");
   draw->add_flag("--explain-macros", render.explain_macros, "")->group("");
   draw->footer(kExamples);
@@ -219,7 +223,8 @@ int run(int argc, char** argv) {
   tell->add_flag("--json", info.json, "for programs");
   tell->add_flag("--check", info.check, "the source's own field against its finest bricks");
   tell->add_option("--time", info.time, "of the data: 2005-08-28T15:00Z, or seconds");
-  tell->add_flag("--force", info.force, "take values that no cloud has (NetCDF, GRIB)")->group("Data");
+  tell->add_flag("--force", info.force, "take values that no cloud has (NetCDF, GRIB)")
+      ->group("Data");
   tell->add_option("--region", info.region, kRegion)->group("Data");
   add_data_options(*tell, info.grid, info.up, info.metres_per_unit, info.density_scale, info.frame);
   tell->callback([&] { info_command(info); });
