@@ -8,6 +8,9 @@
 namespace nepho::gl {
 namespace {
 
+// Of the tolerance; what is predicted to change the picture by more is lit in all pixels after all.
+constexpr double kMostPredicted = 0.5;
+
 class GroundPass {
  public:
   GroundPass(const FrameData& frame, const PlanetScene& planet, const Program& program,
@@ -92,6 +95,7 @@ PixelReport light_ground(const RenderRequest& request, const Forest& forest, con
       report.marched_share = plan.marched_share();
       report.predicted_rms = plan.predicted_rms();
       report.checks = plan.checks();
+      report.interpolates = report.predicted_rms <= kMostPredicted * settings.tolerance;
     }
   }
   if (!report.interpolates) pass.run_all(settings.part_seen);

@@ -31,6 +31,7 @@ constexpr std::size_t kLeastFiner = 32;   // probes, before level of detail can 
 constexpr double kNegligible = 0.1;       // of the integration term
 constexpr std::uint64_t kManyBricks = 2000;
 constexpr std::size_t kLightProbes = 32;
+constexpr std::size_t kFewFiner = 16, kFinerAtOnce = 8;  // probes where each reads many
 
 // Every second bit, from bit 0.
 std::uint32_t even_bits(std::uint64_t code) {
@@ -218,12 +219,17 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
 
   // Over a planet until many bricks were read, as one that is worked out as it is read has no end
   // of them, or until they are seen to matter little.
-  for (std::size_t batch = 0; finest_march && batch < marched; ++batch) {
-    if (planet && (finest_levels.bricks_read() >= kManyBricks || negligible(probes))) break;
-    each_of_batch(batch, [&](std::size_t p) {
+  const std::size_t parts = std::max<std::size_t>(pixels.size() / batches / kFinerAtOnce, 1);
+  std::size_t finer_probes = 0;
+  for (std::size_t part = 0; finest_march && part < marched * parts; ++part) {
+    const bool many = finer_probes >= kFewFiner && finest_levels.bricks_read() >= kManyBricks;
+    if (planet && (many || negligible(probes))) break;
+    each_of_batch(part / parts, [&](std::size_t p) {
+      if (p / batches % parts != part % parts) return;
       probes[p].finest = luminance(finest_march->trace(ray_of(p)).radiance_W_per_m2_sr_nm);
       probes[p].marched_finest = true;
     });
+    finer_probes = std::size_t(std::ranges::count_if(probes, &Probe::marched_finest));
   }
 
   std::vector<PixelPair> integration, level_of_detail, quantisation, light_model;

@@ -13,7 +13,8 @@
 namespace nepho {
 namespace {
 
-constexpr double kDark = 16;  // light of 1e-7 is none
+constexpr double kDark = 16;     // light of 1e-7 is none
+constexpr double kDarkSky = 40;  // as light_sky.comp: the sky is dark to 4e-4
 
 double luminance(const glm::dvec3& c) {
   return f64::luminance(c.r, c.g, c.b);
@@ -124,7 +125,7 @@ double RayMarch::optical_depth(const Ray& ray, double t_max_m, double most) cons
 }
 
 double RayMarch::visibility(const glm::dvec3& point_m, const glm::dvec3& direction) const {
-  const double tau = optical_depth({point_m, direction});
+  const double tau = optical_depth({point_m, direction}, kNoDistance_m, kDarkSky);
   return request_.settings.light == nepho::Light::kSingle ? std::exp(-tau)
                                                           : f64::sky_visibility(tau);
 }
