@@ -74,6 +74,7 @@ struct RenderReport {
   std::vector<PassReport> passes;
   std::vector<VolumeReport> volumes;
   SampleCounts samples;
+  bool budget_bound = false;  // more memory would refine the tree
   std::uint64_t atlas_bytes = 0, sun_bytes = 0, node_bytes = 0, staging_bytes = 0;  // in the budget
   std::uint64_t image_bytes = 0, source_bytes = 0, planet_bytes = 0;                // apart from it
 };

@@ -120,7 +120,8 @@ struct RenderSettings {
   int max_level = 31;           // and at this level
   std::uint64_t seed = 1;
   int probe_pixels = 128;  // pixels on which the error line is measured; 0 = none
-  // Paths on each of them, at most, that measure the light model; 0: a table of plane slabs instead.
+  // Paths on each of them, at most, that measure the light model; 0: a table of plane slabs
+  // instead.
   int probe_paths = 256;
   Engine engine = Engine::kMarch;
   PathGoals paths;  // of Engine::kReference; neither goal given: 5 % of noise
@@ -154,6 +155,14 @@ struct SunSpec {
   std::optional<glm::dvec3> irradiance_W_per_m2_nm;
 };
 
+// What the march's settings are to be chosen for, instead of being given; at most one. Both absent:
+// RenderSettings says all.
+struct PictureTarget {
+  std::optional<double> error;     // of integration, level of detail and quantisation together
+  std::optional<double> frame_ms;  // of light passes and view
+  explicit operator bool() const { return error || frame_ms; }
+};
+
 struct Scene {
   std::string name;
   // Where local metres (x east, y north, z up) are counted from; absent: the first volume's place.
@@ -166,6 +175,7 @@ struct Scene {
       planet;  // absent: the Earth, where a source's volume is on_planet and no sky is given
   bool no_planet = false;  // nor that one
   RenderSettings render;
+  PictureTarget target;               // for which its tolerance and budget are chosen
   std::optional<double> exposure_ev;  // absent: from the picture
   ToneMap tone_map = ToneMap::kAces;
   bool dither = false;  // ordered, in 8-bit pictures

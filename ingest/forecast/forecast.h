@@ -15,7 +15,8 @@ namespace nepho::forecast {
 //   DataFile --conventions/*--> Forecast --bricks/*--> samples --pyramid--> BrickSource
 
 // Cells of any shape: corners [first[cell], first[cell + 1]) in order around each, latitude and
-// longitude (deg). Walls are great circles; cells are convex, or nearly.
+// longitude (deg). Walls are great circles; cells are convex, or nearly. None: a cell without a
+// place.
 struct CellPolygons {
   std::vector<std::uint32_t> first;
   std::vector<glm::dvec2> corner_deg;

@@ -105,6 +105,9 @@ class TileRay {
 };
 
 std::uint8_t stride_of(double pixels) {
+#if defined(NEPHO_MUTANT_PIXEL_GROUND)
+  pixels = 1e9;
+#endif
   return pixels >= 8 ? 8 : pixels >= 4 ? 4 : pixels >= 2 ? 2 : 1;
 }
 

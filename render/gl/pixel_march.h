@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gl/front_air.h"
 #include "gl/object.h"
 #include "gl/pixel_plan.h"
 #include "renderer.h"
@@ -25,8 +26,12 @@ std::string why_all_pixels(const RenderRequest& request);
 std::vector<std::uint32_t> all_pixels(int width, int height);
 
 // Runs a shader of rays (view.comp, ground.comp) for the pixels of `list`, with the distances of
-// the ground in `values.met` (empty: none), and returns what it found, in their order.
+// the ground in `values.met` (empty: none), and returns what it found, in their order. With the air
+// in front of the clouds, rays of the view begin behind it.
 PixelValues march_pixels(const Program& program, std::span<const std::uint32_t> list, int width,
-                         const PixelValues& values);
+                         const PixelValues& values, const FrontAir* front = nullptr);
+
+// view.comp for that air alone.
+void march_front(const Program& program, FrontAir& front);
 
 }  // namespace nepho::gl

@@ -12,7 +12,7 @@ constexpr std::size_t kBlock = 4;  // pixels that are marched side by side
 #if defined(NEPHO_MUTANT_PIXEL_TOLERANCE)
 constexpr double kShare = 10;
 #else
-constexpr double kShare = 0.75;  // of the tolerance
+constexpr double kShare = 1;  // of the tolerance
 #endif
 constexpr float kStraightShare = 0.5f;
 constexpr double kRareShare = 0.05;  // of what one pixel may be off

@@ -335,6 +335,7 @@ void Renderer::report() {
   if (!scene_.has_ice) report.left_out.push_back("the second channel: no volume tells ice apart");
   if (!scene_.absorbs) report.left_out.push_back("absorption: every co-albedo is 0");
   if (scene_.lit.empty()) report.left_out.push_back("light passes: nothing scatters");
+  report.budget_bound = forest_.budget_bound;
   if (forest_.budget_bound)
     report.left_out.push_back("finer nodes that this view asks for: the budget is full");
   report.atlas_bytes = (scene_.has_ice ? 4 : 2) * gl::texels(atlas_size_);

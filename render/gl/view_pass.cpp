@@ -1,5 +1,7 @@
 #include "gl/view_pass.h"
 
+#include <optional>
+
 #include "gl/pixel_strides.h"
 
 namespace nepho::gl {
@@ -14,9 +16,15 @@ PixelReport march_view(const RenderRequest& request, const Forest& forest, const
                    values);
     if (!plan.saves_little()) {
       values.seen.resize(values.met.size());
+      // Where the eye is below the clouds' tops, every ray misses.
+      std::optional<FrontAir> front;
+      if (request.planet->air) {
+        front.emplace(width, height, request.settings.tolerance);
+        march_front(program, *front);
+      }
       PixelValues found;
       for (auto list = plan.next(found, values); !list.empty(); list = plan.next(found, values))
-        found = march_pixels(program, list, width, values);
+        found = march_pixels(program, list, width, values, front ? &*front : nullptr);
       report.interpolates = true;
       report.marched_share = plan.marched_share();
       report.predicted_rms = plan.predicted_rms();

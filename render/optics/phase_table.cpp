@@ -97,7 +97,7 @@ double phase_texel_angle_rad(int texel) {
   return pi * u * u;
 }
 
-PhaseMoments phase_table_moments(const std::vector<float>& table, int wavelength) {
+PhaseMoments phase_table_moments(const std::vector<float>& table, int wavelength, int end) {
   // 4-point Gauss in each interval of u; the element is 2 pi sin(theta) dtheta, dtheta = 2 pi u du.
   constexpr std::array<double, 4> node{0.069431844202973714, 0.330009478207571868,
                                        0.669990521792428132, 0.930568155797026286};
@@ -105,7 +105,7 @@ PhaseMoments phase_table_moments(const std::vector<float>& table, int wavelength
                                          0.326072577431273071, 0.173927422568726929};
   PhaseMoments moments;
   double first = 0;
-  for (std::size_t texel = 0; texel + 1 < std::size_t(kPhaseTexels); ++texel)
+  for (std::size_t texel = 0; texel < std::size_t(end); ++texel)
     for (std::size_t k = 0; k < node.size(); ++k) {
       const double low = table[3 * texel + std::size_t(wavelength)];
       const double high = table[3 * texel + 3 + std::size_t(wavelength)];

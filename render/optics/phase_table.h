@@ -32,6 +32,8 @@ PhaseBulk phase_bulk(const Phase& phase);
 struct PhaseMoments {
   double integral = 0, asymmetry = 0;
 };
-PhaseMoments phase_table_moments(const std::vector<float>& table, int wavelength);
+// `end`: only of the part before this texel, forward of it.
+PhaseMoments phase_table_moments(const std::vector<float>& table, int wavelength,
+                                 int end = kPhaseTexels - 1);
 
 }  // namespace nepho

@@ -22,6 +22,7 @@ struct Span {
 };
 Span span;
 float air_enter_m, air_leave_m;            // where the ray is in the air
+float air_front_m;  // where a ray from above all clouds comes to the sphere around them; else negative
 float rayleigh_to_eye, aerosol_to_eye;  // phase functions
 
 struct Knot {
@@ -120,6 +121,7 @@ void next_span() {
     return;
   }
   span.end_m = min(t + span_length(t), air_leave_m);
+  if (t < air_front_m) span.end_m = min(span.end_m, air_front_m);
   span.k0 = span.k2;
   span.j0 = span.j2;
 #ifdef NEPHO_SUN_MAP
@@ -178,6 +180,24 @@ void next_span() {
 #endif
 }
 
+// Goes on at t_m, as behind a span that ends there.
+void resume_air(float t_m) {
+  span.end_m = t_m;
+  span.has_air = t_m >= air_enter_m && t_m < air_leave_m;
+  Knot knot = air_knot(t_m);
+  span.k2 = knot.k;
+  span.j2 = knot.j;
+#ifdef NEPHO_SUN_MAP
+  span.m2 = knot.m;
+#endif
+#ifdef NEPHO_CLOUDS
+  span.sun2 = knot.sun;
+  span.up2 = air_light(knot.light, LIGHT_UP);
+  span.side2 = air_light(knot.light, LIGHT_SIDE);
+  span.down2 = air_light(knot.light, LIGHT_DOWN);
+#endif
+}
+
 // Starts the spans of the ray of begin_planet_ray(), which ends at end_m at the latest.
 void begin_air(float end_m) {
   vec3 apart = vec3(vec_of(frame.to_sun) - ray_direction);
@@ -194,6 +214,8 @@ void begin_air(float end_m) {
     air_enter_m = float(enter) / planet_ray.stretch;
     air_leave_m = min(float(leave) / planet_ray.stretch, end_m);
   }
+  double clouds = planet.radius_m + double(planet.cloud_top_m) + 1.0LF;
+  air_front_m = r > clouds ? float(sphere_entry(r, mu, clouds, false)) / planet_ray.stretch : -1.0;
   span.begin_m = span.end_m = 0.0;
   span.has_air = false;
   if (air_leave_m <= air_enter_m) air_enter_m = air_leave_m = FAR;

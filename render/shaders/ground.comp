@@ -4,7 +4,7 @@
 // that the buffer names, in its order: neighbours side by side.
 layout(local_size_x = 64) in;
 layout(binding = 0) uniform sampler3D atlas;
-// Two for each pixel. Before: the second holds its place and the distance of the ground. After: the
+// Three for each pixel. Before: the second holds its place and the distance of the ground. After: the
 // first holds the radiance.
 layout(std430, binding = 5) restrict buffer PixelBuffer { vec4 pixels[]; };
 #include "head.glsl"
@@ -76,7 +76,7 @@ Place place_at(float t_m) {
 void main() {
   load_frame();
   load_planet();
-  int entry = 2 * int(gl_GlobalInvocationID.x);
+  int entry = 3 * int(gl_GlobalInvocationID.x);
   if (entry >= pixels.length()) return;
   vec4 asked = pixels[entry + 1];
   pixels[entry + 1] = vec4(1.0, 1.0, 1.0, asked.z);

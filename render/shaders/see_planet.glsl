@@ -1,7 +1,11 @@
 // The view ray over a planet: clouds within spans of air, to the ground (surface.comp).
 
-Seen see(float ground_m) {
-  Seen seen = Seen(vec3(0.0), vec3(1.0), 0.0);
+const float BEHIND_FRONT = 1.0, FRONT_ONLY = 2.0;  // gl/front_air.h
+const float FRONT_MISSED = -1.0;
+
+// `front`, `front_passed`: of the air before that, where it is known.
+Seen see(float ground_m, float part, vec3 front, vec3 front_passed) {
+  Seen seen = Seen(vec3(0.0), vec3(1.0), part == FRONT_ONLY ? FRONT_MISSED : 0.0);
   if (!begin_planet_ray()) return seen;
 #ifdef NEPHO_SUN_MAP
   begin_sun_map();
@@ -17,6 +21,18 @@ Seen see(float ground_m) {
   // Accounted for up to t; no cloud before `clear`.
   float t = 0.0, clear = 0.0, span_end = last_m;
   int ended = 0;
+#ifdef NEPHO_AIR
+  if (part == FRONT_ONLY) {
+    last_m = air_front_m;
+    ended = air_front_m < 0.0 ? 1 : 0;
+    seen.optical_depth = air_front_m < 0.0 ? FRONT_MISSED : 0.0;
+  }
+  if (part == BEHIND_FRONT && air_front_m > 0.0 && air_front_m < ground_m) {
+    seen = Seen(front, front_passed, 0.0);
+    t = clear = air_front_m;
+    resume_air(t);
+  }
+#endif
   // Loops within loops: llvmpipe runs what is in branches at every turn. A new frame (fp64) costs most,
   // then a span of air, then a step of cloud, then a leaf.
   while (ended == 0) {

@@ -70,30 +70,41 @@ float height_over_surface(float t_m) { return planet_height(t_m) - surface_at(su
 // Where the ray goes under the map's heights, between two distances; FAR where it does not. A step is
 // never longer than the steepest slope allows, but for cells' third parts.
 float terrain_distance(float begin_m, float end_m) {
-  float t = begin_m, before = begin_m;
+  float t = begin_m, before = begin_m, gap = 0.0, gap_before = 1.0;
   int ended = 0;
   bool under = false;
   while (ended == 0) {
     float height_m, mu, mu_sun;
     planet_place(t, height_m, mu, mu_sun);
-    float gap = height_over_surface(t);
+    gap = height_over_surface(t);
     under = gap <= 0.0;
     if (under || t >= end_m) {
       ended = 1;
     } else {
       before = t;
+      gap_before = gap;
       float least = max(0.3 * planet.surface_cell_m, planet.pixel_rad * t);
       t = min(t + max(gap / (max(-mu, 0.0) + planet.surface_slope), least), end_m);
     }
   }
   if (!under) return FAR;
-  // Behind the loop: llvmpipe would run it at every turn.
-  float low = before, high = t;
-  for (int halving = 0; halving < 14; ++halving) {
-    float middle = 0.5 * (low + high);
-    if (height_over_surface(middle) > 0.0) low = middle; else high = middle;
+  // Behind the loop: llvmpipe would run it at every turn. Regula falsi, Illinois: an end that stays
+  // counts half.
+  float low = before, high = t, gap_low = gap_before, gap_high = gap;
+  for (int turn = 0; turn < 6 && high > low; ++turn) {
+    float at = clamp(low + (high - low) * gap_low / max(gap_low - gap_high, 1e-6), low, high);
+    float gap_at = height_over_surface(at);
+    if (gap_at > 0.0) {
+      low = at;
+      gap_low = gap_at;
+      gap_high *= 0.5;
+    } else {
+      high = at;
+      gap_high = gap_at;
+      gap_low *= 0.5;
+    }
   }
-  return high;
+  return clamp(low + (high - low) * gap_low / max(gap_low - gap_high, 1e-6), low, high);
 }
 #endif
 

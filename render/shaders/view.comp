@@ -3,8 +3,9 @@
 layout(local_size_x = 64) in;
 layout(binding = 0) uniform sampler3D atlas;
 layout(binding = 1) uniform sampler3D light_atlas;
-// Two for each pixel. Before: the second holds its place and the distance of the ground (planets).
-// After: radiance and optical depth; transmittance, and that distance.
+// Three for each ray. Before: the second holds its pixel, the distance of the ground (planets) and
+// whether the air in front of the clouds is known (first and third: its light and what it leaves) or
+// asked for. After: radiance and optical depth; transmittance, and that distance.
 layout(std430, binding = 5) restrict buffer PixelBuffer { vec4 pixels[]; };
 #include "head.glsl"
 vec2 light_tiles;
@@ -141,12 +142,12 @@ void main() {
 #endif
   light_tiles = vec2(textureSize(light_atlas, 0).xy / 9);
   per_light_texel = 1.0 / vec3(textureSize(light_atlas, 0));
-  int entry = 2 * int(gl_GlobalInvocationID.x);
+  int entry = 3 * int(gl_GlobalInvocationID.x);
   if (entry >= pixels.length()) return;
   vec4 asked = pixels[entry + 1];
   begin_camera_ray(ivec2(asked.xy));
 #ifdef NEPHO_GROUND
-  Seen seen = see(asked.z);
+  Seen seen = see(asked.z, asked.w, pixels[entry].rgb, pixels[entry + 2].rgb);
   pixels[entry + 1] = vec4(seen.transmittance, asked.z);
 #else
   Seen seen = see();

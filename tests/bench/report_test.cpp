@@ -1,6 +1,7 @@
 // The report of made-up results: read back, and checked as XML.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <stdexcept>
 
 #include "bench/csv.h"
+#include "bench/markdown.h"
 #include "bench/page.h"
 #include "bench/pareto.h"
 #include "bench/text.h"
@@ -120,7 +122,8 @@ TEST(Report, csv_of_settings_is_read_back) {
 TEST(Report, csv_of_terms_says_why_a_number_is_missing) {
   const std::vector<SceneResult> scenes{made("one")};
   const Table table = parse_csv(terms_csv(scenes));
-  ASSERT_EQ(table.size(), 1 + 6 * 8u);
+  ASSERT_EQ(table.size(), 1 + 6 * 8u + 1);
+  EXPECT_EQ(table.back()[column(table, "term")], "data: volume & co");
   for (const auto& row : table) {
     ASSERT_EQ(row.size(), table[0].size());
     if (row[column(table, "term")] != kQuantisation) continue;
@@ -128,6 +131,15 @@ TEST(Report, csv_of_terms_says_why_a_number_is_missing) {
     EXPECT_EQ(row[column(table, "not above [1]")], "0.25");
     EXPECT_EQ(row[column(table, "withheld")], "a \"reason\", with a comma");
   }
+}
+
+TEST(Report, csv_of_orders_is_read_back) {
+  const Table table = parse_csv(orders_csv({made("one")}));
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table[1],
+            (std::vector<std::string>{"one", "step", "budget-mib 8", "2", "0.1", "3", ""}));
+  EXPECT_EQ(table[2][column(table, "order [1]")], "");
+  EXPECT_EQ(table[2][column(table, "not fitted")], "too few < 3");
 }
 
 TEST(Report, the_front_is_what_nothing_beats) {
@@ -168,12 +180,27 @@ TEST(Report, the_chart_holds_every_setting_and_the_light_model) {
   const auto pareto = pareto_of(scene);
   ASSERT_TRUE(pareto);
   EXPECT_EQ(pareto->chart.points.size(), 6u);
-  EXPECT_EQ(pareto->chart.series, (std::vector<std::string>{"8", "16", "32"}));
+  EXPECT_EQ(pareto->chart.series, (std::vector<std::string>{"0.5", "1"}));
+  EXPECT_EQ(pareto->chart.points[2].label, "32");
   ASSERT_EQ(pareto->chart.levels.size(), 1u);
   EXPECT_EQ(pareto->chart.levels[0].y, 0.5);
   // step 1 with 8, the cheapest, comes first.
   EXPECT_EQ(pareto->front.front(), 3u);
   EXPECT_NE(lesson_of(scene, *pareto).find("The light model adds 50 %"), std::string::npos);
+}
+
+TEST(Report, an_axis_of_one_value_is_no_axis_of_the_chart) {
+  SceneResult scene = made("one");
+  std::erase_if(scene.settings,
+                [](const SettingResult& s) { return s.setting.value("step") != "1"; });
+  EXPECT_EQ(scene.varied(), (std::vector<std::string>{"budget-mib"}));
+  const auto pareto = pareto_of(scene);
+  EXPECT_TRUE(pareto->chart.series.empty());
+  EXPECT_EQ(pareto->chart.points[0].label, "8");
+  const std::string table = markdown_of(scene);
+  EXPECT_EQ(table.find("step"), table.find("steps"));  // the term, not the setting
+  EXPECT_NE(table.find("| 8 | 8 s |"), std::string::npos) << table;
+  EXPECT_EQ(std::ranges::count(table, '\n'), 5);
 }
 
 TEST(Report, withheld_points_are_not_drawn) {

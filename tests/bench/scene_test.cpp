@@ -4,10 +4,14 @@
 #include <cmath>
 
 #include "../render/scenes.h"
+#include "accuracy_report.h"
 #include "analytic_field.h"
 #include "bench/run.h"
 #include "core/error.h"
+#include "gl/frame_data.h"
 #include "gl_fixture.h"
+#include "reference/error_metric.h"
+#include "reference/march_picture.h"
 
 namespace nepho::bench {
 namespace {
@@ -54,6 +58,28 @@ class BenchScene : public test::GlFixture {
   }
 };
 
+// Voxels of optical depth 1 and more, where a source may be the same at both ends of a cell and
+// another between them.
+TEST_F(BenchScene, the_reference_march_is_converged_in_thick_voxels) {
+  const FieldSource thick(test::box(1000, 1000), test::isotropic(3),
+                          [](glm::dvec3 p) { return 4 * clump(p); });
+  RenderRequest request = opened().request;
+  request.volumes[0].source = &thick;
+  request.settings.max_level = 2;
+  const Forest forest = build_forest(request.volumes, gl::refinement_of(request));
+  const CutLevels levels(forest);
+  const auto picture = [&](const MarchSettings& settings) {
+    return march_picture(RayMarch(levels, request, settings), request);
+  };
+  const HdrImage truth = picture({1e-6, 1e-8, 5});
+  const double error = picture_error(picture(kReferenceMarch), truth),
+               usual = picture_error(picture({}), truth);
+  test::report_accuracy("reference march", "bench, thick voxels: cells in four", error, 1.5e-3,
+                        "relative rms of luminance");
+  EXPECT_LE(error, 1.5e-3);
+  EXPECT_GT(usual, 2 * error);
+}
+
 // Simpson's rule over a trilinear field whose kinks steps do not know of, with a source that is
 // linear in optical depth: between the first order and the second.
 TEST_F(BenchScene, steps_converge) {
@@ -66,6 +92,7 @@ TEST_F(BenchScene, steps_converge) {
     EXPECT_TRUE(steps.told()) << "order: " << steps.withheld;
     EXPECT_GE(result.settings[s].times.frame_s.median, result.settings[s].times.frame_s.low);
     EXPECT_EQ(result.settings[s].times.frame_s.runs, kLeastRepeats);
+    EXPECT_EQ(result.settings[s].times.gpu_frame_s.has_value(), result.no_gpu_clock.empty());
   }
   ASSERT_EQ(result.convergence.size(), 1u);
   ASSERT_TRUE(result.convergence[0].fit) << "order: " << result.convergence[0].why_not;

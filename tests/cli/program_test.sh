@@ -26,8 +26,12 @@ version_and_help() {
   nephoscope render --help >r.txt
   for option in size look-from look-at fov sun budget-mib step tolerance fetch seed frame fps \
     density-scale up metres-per-unit grid light exposure explain explain-all at heading pitch view time \
-    no-planet force region engine spp noise levels host-mib exact-orders; do
+    no-planet force region engine spp noise levels host-mib exact-orders target-error target-ms; do
     has r.txt "^ *(-o,)?--$option"
+  done
+  nephoscope bench --help >b.txt
+  for option in sweep size repeat spp exact-orders host-mib finest-step; do
+    has b.txt "^ *--$option "
   done
   nephoscope compare --help >c.txt
   for option in diff diff-of diff-scale exposure tone-map pixels-per-degree json; do
@@ -61,6 +65,40 @@ render_repeats_from_its_metadata() {
   # A changed option is another picture: the comparison above can fail.
   nephoscope render in/one.ppm --sun 200,40 -o three.ppm >/dev/null
   nephoscope compare in/one.ppm three.ppm >differ.txt && has differ.txt 'not the same pixels'
+}
+
+targets_choose_settings() {
+  sphere in/s.json
+  nephoscope render in/s.json --target-error 10% -o e.ppm >e.txt
+  has e.txt '^target: error 10 %: tolerance [0-9.e-]+, [0-9]+ MiB, [0-9.]+ pixels a voxel give [0-9.]+ %'
+  has e.txt "the light model's [0-9]+ % is beside it"
+  # What was chosen is the picture's scene: the same bits again, and no target in it.
+  nephoscope info e.ppm >i.txt && has i.txt '"tolerance"'
+  ! grep -q '"target_error"' i.txt || fail "the target stayed in the scene"
+  nephoscope render e.ppm -o again.ppm >/dev/null
+  nephoscope compare e.ppm again.ppm >same.txt && has same.txt 'bit for bit'
+  nephoscope render in/s.json --target-ms 1e8 -o t.ppm >t.txt
+  has t.txt '^target: frame 1e.08 ms: .* ms of [CG]PU time for light passes and view'
+  # Too short for any: a picture all the same, and the time that it takes.
+  nephoscope render in/s.json --target-ms 0.001 -o u.ppm >u.txt 2>u.err
+  has u.txt '^target: frame 0.001 ms is not met: '
+  has u.err 'warning: --target-ms 0.001 is not met: the fastest setting takes [0-9.]+ ms'
+  refuses() {
+    status=$1 reason=$2 && shift 2
+    code=0 && nephoscope "$@" >/dev/null 2>no.txt || code=$?
+    [ "$code" = "$status" ] || fail "exit $code: $*"
+    has no.txt "$reason"
+  }
+  for target in 0 -1% 0.001% 300%; do
+    refuses 1 "from 0.0001 to 1" render in/s.json "--target-error=$target" -o no.ppm
+  done
+  refuses 1 'at least 0.26 %, the rounding of 8 bits.*write .exr or .pfm: 0.01 %' \
+    render in/s.json --target-error 0.1% -o no.ppm
+  refuses 1 'probe-pixels' render in/s.json --target-error 1% --probe-pixels 0 -o no.ppm
+  refuses 1 'engine march' render in/s.json --target-error 1% --engine reference -o no.ppm
+  refuses 2 'excludes' render in/s.json --target-error 1% --tolerance 0.1 -o no.ppm
+  refuses 2 'excludes' render in/s.json --target-ms 5 --budget-mib 4 -o no.ppm
+  refuses 2 'excludes' render in/s.json --target-ms 5 --target-error 1% -o no.ppm
 }
 
 frames_and_exposes_by_itself() {
@@ -276,6 +314,53 @@ compare_maps_differences() {
     fail "map of mean $measured, printed $printed"
   nephoscope compare b.pfm a.pfm --pixels-per-degree 20 --json >n.json
   if cmp -s c.json n.json; then fail "the distance of the eye changes nothing"; fi
+}
+
+bench_reports() {
+  sphere in/s.json
+  sphere in/t.json '"sun": {"azimuth_deg": 120, "elevation_deg": 30}'
+  nephoscope bench in/s.json in/t.json --sweep step=1,2,4 --sweep max-level=1,2 --size 16x9 --spp 0 \
+    -o report >b.txt 2>progress.txt
+  has b.txt '^s: step 1, max-level 1: frame [0-9.]+ m?s CPU, error [0-9.]+ %$'
+  has b.txt '^report/index\.html$'
+  has progress.txt '^bench: t: step 4, max-level 2, run 5 of 5, about [0-9]+ s left$'
+  ls -A report >files.txt
+  printf '%s\n' bench.csv index.html orders.csv pareto-s.svg pareto-t.svg tables.md terms.csv >expected.txt
+  cmp files.txt expected.txt || { cat files.txt; fail "other files than those of a report"; }
+  # A row for each scene and setting, as many fields as the header has.
+  awk -F, 'NR == 1 { n = NF } NF != n { exit 1 } END { exit NR != 13 }' report/bench.csv ||
+    fail "bench.csv is no table of 12 settings"
+  has report/bench.csv '^scene,step \[voxels\],max-level,runs \[1\],'
+  has report/index.html 'no GPU time: the OpenGL device is a rasteriser on the CPU|GPU.s own clock'
+  has report/index.html 'order -?[0-9.]+, standard error [0-9.]+, from 3 points|not fitted'
+  # One scene: one chart. What was there is replaced.
+  nephoscope bench in/s.json --size 16x9 --spp 0 -o report >b.txt 2>/dev/null
+  has b.txt '^s: as the scene says: frame ' && [ -f report/pareto.svg ] || fail "no chart"
+}
+
+bench_refuses() {
+  sphere in/s.json
+  refused() {  # refused WORDS OPTIONS...
+    words=$1 && shift
+    if nephoscope bench in/s.json --size 16x9 "$@" -o new >b.txt 2>err.txt; then
+      fail "took $*"
+    fi
+    has err.txt "$words"
+    [ ! -e new ] || fail "$*: left a folder behind"
+  }
+  refused 'no such setting.*step \(voxels\), tolerance, budget-mib' --sweep stepp=1,2
+  refused 'an empty range' --sweep step=
+  refused 'a value is missing' --sweep step=1,,2
+  refused 'exclude each other' --sweep step=1 --sweep tolerance=0.1
+  refused 'swept twice' --sweep step=1 --sweep step=2
+  refused 'a whole number from 5' --repeat 4
+  refused 'a whole number from 0' --spp -1
+  refused 'fewer than 8' --spp 7
+  # Nothing but noise: octaves are judged by paths, and two are none.
+  refused 'no reference is good enough.*paths.*\(--spp\)' --sweep octaves=7,8 --spp 8
+  : >plain
+  if nephoscope bench in/s.json -o plain >b.txt 2>err.txt; then fail "wrote into a file"; fi
+  has err.txt 'plain: cannot write'
 }
 
 "$claim"

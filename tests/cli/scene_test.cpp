@@ -91,6 +91,13 @@ TEST(SceneFile, errors_name_line_column_and_field) {
   expect_in("a list of three numbers", with("\"camera\": {\"look_from_m\": [1, 2]}"));
   expect_in("camera.look_from_m[1]", with("\"camera\": {\"look_from_m\": [1, \"2\", 3]}"));
   expect_in("exclude each other", with("\"render\": {\"step_voxels\": 1, \"tolerance\": 0.1}"));
+  for (const char* given : {"tolerance", "step_voxels", "budget_mib"})
+    expect_in("exclude each other",
+              with("\"render\": {\"target_error\": 0.01, \"" + std::string(given) + "\": 1}"));
+  expect_in("exclude each other", with("\"render\": {\"target_error\": 0.1, \"target_ms\": 5}"));
+  expect_in("expected 0.0001 to 1", with("\"render\": {\"target_error\": 0}"));
+  expect_in("nothing to choose",
+            with("\"render\": {\"target_ms\": 33, \"engine\": \"reference\"}"));
   expect_in("expected 'elevation_deg'", with("\"sun\": {\"azimuth_deg\": 40}"));
   expect_in("one of aces, none", with("\"tone_map\": \"filmic\""));
   expect_in("camera looks nowhere",
@@ -177,7 +184,7 @@ TEST(SceneFile, what_is_written_reads_back_to_the_same_bits) {
       "below_W_per_m2_sr_nm": [0, 0, 0]}, "image": {"width": 33, "height": 44},
       "render": {"budget_mib": 12.5, "tolerance": 0.003, "fetch": "texels8", "light": "single",
       "octaves": 4, "pixels_per_voxel": 1.5, "max_level": 7, "seed": 77, "probe_pixels": 5,
-      "pixels": "all"},
+      "probe_paths": 9, "pixels": "all"},
       "exposure_ev": 1.37, "tone_map": "none", "dither": "ordered"})");
   scene.camera.up = glm::normalize(glm::dvec3(0.1, 0.7, 0.3));
   const std::string once = write_scene(scene, "/data");
@@ -196,9 +203,21 @@ TEST(SceneFile, what_is_written_reads_back_to_the_same_bits) {
   EXPECT_EQ(back.volumes[1].phase->asymmetry, 0.7);
   EXPECT_EQ(back.render.seed, 77u);
   EXPECT_EQ(back.render.tolerance, 0.003);
+  EXPECT_EQ(back.render.probe_paths, 9);
   EXPECT_EQ(back.render.pixels, WhichPixels::kAll);
   EXPECT_EQ(back.exposure_ev, 1.37);
   EXPECT_TRUE(back.dither);
+}
+
+TEST(SceneFile, a_target_stands_for_the_settings_that_it_chooses) {
+  const Scene scene =
+      parse("{\"volumes\": [" + kVolume + R"(], "render": {"target_error": 0.03}})");
+  EXPECT_EQ(scene.target.error, 0.03);
+  const std::string written = write_scene(scene, "/data");
+  EXPECT_EQ(parse(written).target.error, 0.03);
+  EXPECT_EQ(written.find("tolerance"), std::string::npos);
+  const Scene timed = parse("{\"volumes\": [" + kVolume + R"(], "render": {"target_ms": 33}})");
+  EXPECT_EQ(parse(write_scene(timed, "/data")).target.frame_ms, 33);
 }
 
 TEST(SceneFile, points_are_over_the_scenes_own_planet) {

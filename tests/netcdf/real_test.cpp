@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "geo/place.h"
 #include "nc_writer.h"
 #include "sources/netcdf/nc_file.h"
 #include "sources/netcdf/open_netcdf.h"
@@ -167,6 +168,44 @@ TEST(RealFiles, IconLes) {
   EXPECT_GT(inside / 54, 5);
   EXPECT_LT(outside, 0.02 * inside);
   EXPECT_LT(ice, 0.01 * inside);
+}
+
+// ICON's triangles, two levels of pressure; its temperature under the name of cloud water.
+TEST(RealFiles, IconTriangles) {
+  const test::TestFolder folder;
+  const std::string path = folder / "icon.nc";
+  std::filesystem::copy_file(std::string(NEPHO_TEST_REAL_DATA) + "/edge/psyplot_icon_test.nc",
+                             path);
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  int id = 0, variable = 0;
+  ASSERT_EQ(nc_open(path.c_str(), NC_WRITE, &id), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(id, "t2m", &variable), NC_NOERR);
+  ASSERT_EQ(nc_rename_var(id, variable, "clw"), NC_NOERR);
+  ASSERT_EQ(nc_put_att_text(id, variable, "units", 9, "mg kg**-1"), NC_NOERR);
+  nc_close(id);
+  const auto f = test::open(path);
+  print(*f);
+  EXPECT_TRUE(says(*f, "5120 x 1 cells, cells in a row, clat, clon"));
+  expect_sound(*f);
+  const auto grid = f->grid(0);
+  ASSERT_NE(grid->polygons(), nullptr);
+  // Triangles that cover the planet once, each with its centre inside.
+  double area = 0, worst = 0;
+  const auto& cells = *grid->polygons();
+  for (std::size_t n = 0; n + 1 < cells.first.size(); ++n) {
+    ASSERT_EQ(cells.first[n + 1] - cells.first[n], 3u);
+    const glm::dvec3 a = unit_vector(cells.corner_deg[3 * n]),
+                     b = unit_vector(cells.corner_deg[3 * n + 1]),
+                     c = unit_vector(cells.corner_deg[3 * n + 2]);
+    // Van Oosterom & Strackee (1983), doi:10.1109/TBME.1983.325207.
+    area += 2 * std::atan2(std::abs(glm::dot(a, glm::cross(b, c))),
+                           1 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
+    const glm::dvec3 middle = glm::normalize(a + b + c);
+    const glm::dvec2 centre = grid->lat_lon_deg(double(n) + 0.5, 0.5);
+    worst = std::max(worst, glm::length(middle - unit_vector(centre)));
+  }
+  EXPECT_NEAR(area, 4 * M_PI, 1e-6);
+  EXPECT_LT(worst, 0.01);
 }
 
 TEST(RealFiles, EdgesAreRefusedInWords) {

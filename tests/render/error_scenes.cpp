@@ -107,7 +107,37 @@ ErrorScene from_space() {
     "render": {"budget_mib": 4}})");
 }
 
+double thin_clumps_per_m(const glm::dvec3& p) {
+  return 0.15 * cloud(0.003 * p);
+}
+double haze_per_m(const glm::dvec3& p) {
+  return 1e-3 * std::exp(-p.z / 300) * (1 + 0.3 * std::sin(p.x / 90));
+}
+double thin_slab_per_m(const glm::dvec3& p) {
+  const double top_m = 700 + 60 * std::sin(p.x / 90) * std::cos(p.y / 110);
+  return 2e-3 * std::clamp((top_m - p.z) / 200, 0.0, 1.0) * std::clamp(p.z / 200, 0.0, 1.0);
+}
+double ball_per_m(const glm::dvec3& p) {
+  const double r = glm::length(p - glm::dvec3(0, 0, 500)) / 450;
+  return 4e-3 * std::pow(std::max(1 - r * r, 0.0), 2);
+}
+
+template <double (*kField)(const glm::dvec3&)>
+ErrorScene thin() {
+  static const FieldSource source(box(1000, 1000), isotropic(3),
+                                  [](glm::dvec3 p) { return kField(p); });
+  return drawn(source);
+}
+
 }  // namespace
+
+const std::vector<ErrorSceneKind>& thin_scenes() {
+  static const std::vector<ErrorSceneKind> kinds = {{"thin clumps", thin<thin_clumps_per_m>, 0},
+                                                    {"haze", thin<haze_per_m>, 0},
+                                                    {"thin slab", thin<thin_slab_per_m>, 0},
+                                                    {"ball", thin<ball_per_m>, 0}};
+  return kinds;
+}
 
 const std::vector<ErrorSceneKind>& error_scenes() {
   static const std::vector<ErrorSceneKind> kinds = {

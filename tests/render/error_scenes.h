@@ -25,5 +25,7 @@ struct ErrorSceneKind {
 };
 
 const std::vector<ErrorSceneKind>& error_scenes();
+// Clouds so thin that light between voxels is no limit: 1 % is within reach of the march.
+const std::vector<ErrorSceneKind>& thin_scenes();
 
 }  // namespace nepho::test

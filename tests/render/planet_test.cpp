@@ -263,6 +263,34 @@ TEST_F(PlanetRenderer, NoPalePatchUnderASmallCloud) {
   EXPECT_GE(under, 0.3 * open);
 }
 
+// An even deck around the planet, from 3e6 m over the place where the sun sets: along lines that
+// are equally far from the sun nothing changes, however wide the texels of the shadows' map.
+TEST_F(PlanetRenderer, TheTerminatorHasNoTeeth) {
+  const FieldSource deck(std::make_shared<ShellChart>(Ellipsoid::sphere(kRadius_m), 0, 16000),
+                         Lattice({kSplitXy, kSplitXy, kSplitZ}), [](glm::dvec3 p) {
+                           return std::abs(glm::length(p) - kRadius_m - 5000) < 1500 ? 2e-3 : 0;
+                         });
+  RenderRequest request = planet_request({&deck});
+  request.sun.to_sun = sun_at(0, 90);  // to the right of a picture with north above
+  request.settings.width = 120;
+  request.settings.height = 40;
+  look(request, 3e6, -90, 12);
+  const HdrImage image = render(request).image;
+  double worst = 0;
+  for (int x = image.width / 2; x < 100; ++x) {  // beyond, the next of the deck's voxels
+    double least = 1e9, most = 0;
+    for (int y = 0; y < image.height; ++y) {
+      least = std::min(least, double(green_at(image, x, y)));
+      most = std::max(most, double(green_at(image, x, y)));
+    }
+    worst = std::max(worst, most / least - 1);
+  }
+  std::printf("measured: teeth of the terminator: %.1e\n", worst);
+  report_accuracy("air", "an even deck along the terminator, greatest over least", worst, 0.03,
+                  "relative");
+  EXPECT_LE(worst, 0.03);
+}
+
 TEST_F(PlanetRenderer, NothingOfAPlanetIsMadeForASceneWithoutOne) {
   const Slab slab(0, 1000, 500, 1e-3);
   const auto passes = [](const RenderReport& report, const std::string& name) {

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "gl_fixture.h"
+#include "optics/hg_draine.h"
 #include "physics/physics_cpp.h"
 #include "scenes.h"
 
@@ -20,12 +21,14 @@ double relative(double got, double truth) {
 
 // First order of scattering in a slab, up at its top, what doubling starts from (Hansen and Travis
 // 1974): I = w P / (4 pi) mu0 / (mu + mu0) (1 - exp(-tau (1/mu + 1/mu0))).
-TEST_F(Renderer, SingleScatteringOfASlabSeenFromAbove) {
-  for (const double tau : {1e-6, 0.1, 2.0, 30.0, 1e4}) {
+class SlabFromAbove : public Renderer {
+ protected:
+  void expect_closed_form(double tau, const Phase& phase, double (*value)(double)) {
     const double height_m = 1000, extinction = tau / height_m;
     const FieldSource slab(box(4000, height_m, {true, true}), isotropic(1),
                            [&](glm::dvec3) { return extinction; });
     RenderRequest request = request_of({&slab});
+    request.volumes[0].phase = phase;
     request.sun.to_sun = glm::normalize(glm::dvec3(0.5, 0.3, 0.6));
     request.camera = {{0, -3000, 4000}, {0, 0, 1000}, {0, 0, 1}, 0.4};
     request.settings.tolerance = 1e-3;
@@ -36,7 +39,7 @@ TEST_F(Renderer, SingleScatteringOfASlabSeenFromAbove) {
         const glm::dvec3 d = pixel_direction(request, x, y);
         const double mu = -d.z, mu0 = request.sun.to_sun.z;
         const glm::dvec3 apart = request.sun.to_sun - d;
-        const double p = f64::hg_phase(0.5 * glm::dot(apart, apart), 0.85);
+        const double p = value(0.5 * glm::dot(apart, apart));
         const double truth = p * mu0 / (mu + mu0) * -std::expm1(-tau * (1 / mu + 1 / mu0));
         worst = std::max(worst, relative(green_at(image, x, y), truth));
         if (tau < 5) worst_tau = std::max(worst_tau, relative(tau_at(image, x, y), tau / mu));
@@ -46,6 +49,15 @@ TEST_F(Renderer, SingleScatteringOfASlabSeenFromAbove) {
     EXPECT_LE(worst, 5e-3) << tau;
     EXPECT_LE(worst_tau, 1e-5) << tau;
   }
+};
+TEST_F(SlabFromAbove, ScattersOnce) {
+  for (const double tau : {1e-6, 0.1, 2.0, 30.0, 1e4})
+    expect_closed_form(tau, {PhaseKind::kHenyeyGreenstein, 10e-6, 0.85},
+                       [](double down) { return f64::hg_phase(down, 0.85); });
+}
+TEST_F(SlabFromAbove, ScattersOnceByHgDraine) {
+  expect_closed_form(0.1, {PhaseKind::kHgDraine, 10e-6, 0},
+                     [](double down) { return hg_draine_fit(10e-6).value(down); });
 }
 
 // From within 2 m of the ground to 1e9 m: the path through a shell in closed form, in double.

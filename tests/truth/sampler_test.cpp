@@ -133,6 +133,22 @@ INSTANTIATE_TEST_SUITE_P(Truth, Draine,
                                   std::to_string(int(1000 * with.param.g));
                          });
 
+// The peak alone, as far as it reaches.
+class Peaks : public testing::TestWithParam<int> {};
+TEST_P(Peaks, AreSampledByTheirDensity) {
+  const PhaseKind kinds[] = {PhaseKind::kMie, PhaseKind::kHgDraine, PhaseKind::kHenyeyGreenstein};
+  const PhaseSampler sampler(Phase{kinds[GetParam()], 10e-6, 0.85});
+  ASSERT_TRUE(sampler.has_peak());
+  for (int wavelength = 0; wavelength < 3; ++wavelength) {
+    const Followed followed =
+        follow_density([&](Random& random) { return sampler.sample_peak(wavelength, random); },
+                       [&](double down) { return sampler.peak_values(down)[wavelength]; });
+    EXPECT_NEAR(followed.integral, 1, 1e-3);  // of a jump at the end, in bins
+    EXPECT_GT(followed.p, kAccept);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Truth, Peaks, testing::Values(0, 1, 2), testing::PrintToStringParamName());
+
 class FittedDroplets : public testing::TestWithParam<int> {};
 TEST_P(FittedDroplets, AreSampledByTheirFormula) {
   const Phase phase{PhaseKind::kHgDraine, GetParam() * 1e-6, 0};

@@ -238,7 +238,7 @@ std::vector<double> log_ticks(double low, double high) {
         const double tick = step * std::pow(10.0, decade);
         if (tick >= low && tick <= high) ticks.push_back(tick);
       }
-    if (ticks.size() >= 4) break;
+    if (ticks.size() >= 3) break;
   }
   if (ticks.size() < 2 && high > low) ticks = {low, high};
   return ticks;

@@ -94,16 +94,42 @@ std::string terms_csv(const std::vector<SceneResult>& scenes) {
   top.add("relative MSE [1]").add("RMSE of 8-bit RGB [levels]").add("FLIP mean [1]");
   top.add("withheld");
   std::string text = top.line();
-  for (const SceneResult& scene : scenes)
+  for (const SceneResult& scene : scenes) {
     for (const SettingResult& s : scene.settings)
       for (const Term& term : s.terms) {
         Row row = head_of(scene, s);
-        row.add(term.name).add_if(term.told(), term.rms).add_if(!term.told(), term.below);
+        row.add(term.name).add_if(term.told(), term.rms).add_if(term.below > 0, term.below);
         for (const double value :
              {term.bias, term.bias_of_truth, term.relative_mse, term.rmse_8bit, term.flip_mean})
           row.add_if(term.told(), value);
         text += row.add(term.withheld).line();
       }
+    for (const VolumeDataError& d : scene.data) {
+      Row row;
+      row.add(scene.name);
+      for (std::size_t axis = 0; axis < scene.settings.front().setting.values.size(); ++axis)
+        row.add("");
+      row.add("data: " + d.volume);
+      row.add_if(d.error.has_value(), d.error ? d.error->rms_per_m / d.error->field_rms_per_m : 0);
+      for (int empty = 0; empty < 6; ++empty) row.add("");
+      text += row.add(d.error ? "" : "the source has no field of its own").line();
+    }
+  }
+  return text;
+}
+
+std::string orders_csv(const std::vector<SceneResult>& scenes) {
+  Row top;
+  top.add("scene").add("axis").add("at").add("order [1]").add("standard error [1]");
+  std::string text = top.add("points [1]").add("not fitted").line();
+  for (const SceneResult& scene : scenes)
+    for (const Convergence& c : scene.convergence) {
+      const OrderFit fit = c.fit.value_or(OrderFit{});
+      Row row;
+      row.add(scene.name).add(c.axis).add(c.at);
+      row.add_if(c.fit.has_value(), fit.order).add_if(c.fit.has_value(), fit.standard_error);
+      text += row.add_if(c.fit.has_value(), fit.points).add(c.why_not).line();
+    }
   return text;
 }
 

@@ -216,7 +216,8 @@ void Page::pictures(const SceneResult& scene, const std::vector<std::size_t>& fr
   std::snprintf(text, sizeof text, "; maps of FLIP from 0 (black) to %g (pale yellow)", full);
   add("<h3>Pictures</h3>\n");
   paragraph("note", std::string("Against ") +
-                        (scene.paths ? "the path traced truth" : "the march on the finest bricks") +
+                        (scene.reference_is_truth ? "the path traced truth"
+                                                  : "the march on the finest bricks") +
                         text + ".");
   add("<div class=\"pictures\">\n<figure>");
   image(reference, scene.name + ", reference");

@@ -7,11 +7,10 @@
 namespace nepho::bench {
 namespace {
 
-// The values of all axes but one, in words that fit beside a point.
-std::string short_label(const Setting& setting, const std::string& without) {
+// The values of axes, in words that fit beside a point.
+std::string short_label(const Setting& setting, const std::vector<std::string>& axes) {
   std::string text;
-  for (const auto& [name, value] : setting.values)
-    if (name != without) text += (text.empty() ? "" : ", ") + value;
+  for (const std::string& axis : axes) text += (text.empty() ? "" : ", ") + setting.value(axis);
   return text.empty() ? "as set" : text;
 }
 
@@ -19,13 +18,12 @@ std::string named(const std::string& axis) {
   return unit_of(axis).empty() ? axis : axis + " (" + unit_of(axis) + ")";
 }
 
-std::string subtitle_of(const SceneResult& scene, const std::string& series, std::size_t withheld) {
-  std::string labels;
-  for (const auto& [name, value] : scene.settings.front().setting.values)
-    if (name != series) labels += (labels.empty() ? "" : ", ") + named(name);
+std::string subtitle_of(const SceneResult& scene, const std::string& series,
+                        const std::vector<std::string>& labels, std::size_t withheld) {
   std::string text = std::to_string(scene.reference.width) + "x" +
                      std::to_string(scene.reference.height) + " pixels";
-  if (!labels.empty()) text += "; labels: " + labels;
+  for (const std::string& axis : labels)
+    text += (axis == labels.front() ? "; labels: " : ", ") + named(axis);
   if (!series.empty()) text += "; colours: " + named(series);
   if (withheld) text += "; " + std::to_string(withheld) + " withheld";
   return text;
@@ -45,8 +43,12 @@ const Term* largest_part(const std::vector<Term>& terms) {
 
 std::optional<Pareto> pareto_of(const SceneResult& scene) {
   const std::string judged = judged_by(scene.settings);
-  const auto& axes = scene.settings.front().setting.values;
-  const std::string series_axis = axes.size() > 1 ? axes.back().first : "";
+  std::vector<std::string> labels = scene.varied();
+  std::string series_axis;
+  if (labels.size() > 1) {
+    series_axis = labels.front();
+    labels.erase(labels.begin());
+  }
   const bool gpu = std::ranges::all_of(
       scene.settings, [](const SettingResult& s) { return s.times.gpu_frame_s.has_value(); });
   Pareto found;
@@ -57,9 +59,9 @@ std::optional<Pareto> pareto_of(const SceneResult& scene) {
     if (!term || !term->told() || !(term->rms > 0)) continue;
     const Spread& time = gpu ? *s.times.gpu_frame_s : s.times.frame_s;
     ChartPoint point{.x = time.median, .y = term->rms, .x_low = time.low, .x_high = time.high};
-    point.label = short_label(s.setting, series_axis);
+    point.label = short_label(s.setting, labels);
     if (!series_axis.empty()) {
-      const std::string& value = s.setting.values.back().second;
+      const std::string value = s.setting.value(series_axis);
       const auto known = std::ranges::find(chart.series, value);
       point.series = std::size_t(known - chart.series.begin());
       if (known == chart.series.end()) chart.series.push_back(value);
@@ -69,7 +71,8 @@ std::optional<Pareto> pareto_of(const SceneResult& scene) {
   }
   if (chart.points.empty()) return {};
   chart.title = scene.name + ": error against run time";
-  chart.subtitle = subtitle_of(scene, series_axis, scene.settings.size() - chart.points.size());
+  chart.subtitle =
+      subtitle_of(scene, series_axis, labels, scene.settings.size() - chart.points.size());
   chart.x_label = gpu ? "GPU time of a frame (s)" : "process CPU time of a frame (s)";
   chart.y_label = judged == kTotal ? "error, rms of luminance (all)"
                                    : "error, rms of luminance (all but the light model)";

@@ -9,7 +9,7 @@ namespace nepho::bench {
 
 // Error against run time of one scene's settings: GPU time where it is known, else process CPU
 // time of a frame; the error that the settings are judged by (judged_by), withheld ones left out.
-// Colours are the last axis where there are several. Absent where every error is withheld.
+// Colours are the first axis where several vary. Absent where every error is withheld.
 struct Pareto {
   Chart chart;
   std::vector<std::size_t> settings;  // of the chart's points, in their order

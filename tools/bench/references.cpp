@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/error.h"
 #include "gl/frame_data.h"
@@ -11,9 +12,10 @@
 namespace nepho::bench {
 namespace {
 
-constexpr double kSlowestStep_voxels = 0.5;  // no reference is coarser
-constexpr double kNotYet = -1;               // a change that is not measured yet
-constexpr std::size_t kChangePixels = 256;   // on which a stricter march is compared
+constexpr double kSlowestStep_voxels = 0.5;    // no reference is coarser
+constexpr std::uint32_t kFirstForecast = 256;  // paths a pixel, before noise is extrapolated
+constexpr double kNotYet = -1;                 // a change that is not measured yet
+constexpr std::size_t kChangePixels = 256;     // on which a stricter march is compared
 
 int light_key(const RenderSettings& settings) {
   return settings.light == Light::kSingle ? 1 : settings.octaves;
@@ -24,13 +26,6 @@ std::uint64_t node_count(const Forest& forest) {
   for (const VolumeTree& tree : forest.volumes) nodes += tree.nodes.size();
   return nodes;
 }
-
-// The estimate of a step goes by its ends; in voxels of optical depth 1 it left 0.5 % of a picture
-// at 1e-4, with a cell in four 0.03 %.
-const MarchSettings kMarchSettings{
-    .source_tolerance = 2.5e-5, .least_transmittance = 1e-6, .least_halvings = 2};
-const MarchSettings kStricterMarch{
-    .source_tolerance = 1.25e-5, .least_transmittance = 1e-7, .least_halvings = 3};
 
 // Without an end of finer levels that a machine could hold.
 bool is_endless(const RenderRequest& request) {
@@ -44,6 +39,8 @@ bool is_endless(const RenderRequest& request) {
 References::References(const OpenedScene& opened, const ReferenceGoals& goals, Progress& progress,
                        const RenderSettings& finest_of_sweep)
     : opened_(opened), goals_(goals), progress_(progress) {
+  if (goals.most_paths > 0 && goals.most_paths < kLeastPaths)
+    throw std::invalid_argument("too few paths to tell their noise");
   if (opened.request.planet) planet_ = std::make_shared<const PlanetModel>(opened.request, nullptr);
   make_finest(finest_of_sweep);
   const RenderRequest request = request_with(finest_of_sweep);
@@ -72,15 +69,16 @@ void References::make_finest(const RenderSettings& finest_of_sweep) {
       // What a source could not read it cannot read below either, and says so there.
     }
   holds_everything_ = false;
-  const auto refined = [&](double finer) {
+  // An eighth of the memory is a level less, where memory is what ends it.
+  const auto refined = [&](double finer, double host_mib) {
     RenderRequest asked = request;
-    asked.settings.budget_mib = goals_.host_mib;
+    asked.settings.budget_mib = host_mib;
     asked.settings.pixels_per_voxel /= finer;
     asked.settings.tolerance /= finer * finer;
     return build_forest(asked.volumes, gl::refinement_of(asked));
   };
-  less_fine_ = refined(2);
-  finest_forest_ = refined(4);
+  less_fine_ = refined(2, goals_.host_mib / 8);
+  finest_forest_ = refined(4, goals_.host_mib);
 }
 
 void References::make_mask(const HdrImage& finest) {
@@ -125,7 +123,7 @@ HdrImage References::march(const LevelSet& levels, const RenderRequest& request,
                            const std::string& what) {
   progress_.begin(Work::kMarch, what);
   const double pixels = double(request.settings.width) * request.settings.height;
-  const RayMarch march(levels, request, kMarchSettings, planet_);
+  const RayMarch march(levels, request, kReferenceMarch, planet_);
   HdrImage image = march_picture(
       march, request, [&](std::size_t done) { progress_.within(double(done) / pixels); });
   progress_.end();
@@ -247,14 +245,17 @@ const std::optional<Truth>& References::truth(std::span<const RenderSettings> se
         progress_.within(double(so_far.samples) / goals_.most_paths);
         // At the same numbers of paths on every machine: 8, 16, ... 128, 256, 384, ...
         const std::uint32_t n = so_far.samples;
-        if (n < 8 || (n & (n - 1) && n % 128)) return false;
+        if (n < kLeastPaths || (n & (n - 1) && n % 128)) return false;
         const double noise = noise_of(so_far);
         const HdrImage image = masked(so_far.image);
         double least = INFINITY;
         for (const HdrImage* picture : modelled)
           least = std::min(least, picture_error(*picture, image));
-        // Noise adds to what is measured; a tenth in hand.
-        return noise * kLeastRatio * 1.1 < std::sqrt(std::max(least * least - noise * noise, 0.0));
+        const double error = std::sqrt(std::max(least * least - noise * noise, 0.0));
+        // Far from it: what most_paths would leave is known well enough to say what is needed.
+        const double at_most = noise * std::sqrt(double(n) / goals_.most_paths);
+        if (n >= kFirstForecast && at_most * kLeastRatio > 2 * error) return true;
+        return noise * kLeastRatio * 1.1 < error;  // a tenth in hand
       });
   progress_.end();
   *truth_ = Truth{masked(paths.image), noise_of(paths), paths.samples};

@@ -171,6 +171,12 @@ void refuse_without_numbers(const SceneResult& result) {
 
 }  // namespace
 
+std::vector<std::string> SceneResult::varied() const {
+  std::vector<Setting> all;
+  for (const SettingResult& s : settings) all.push_back(s.setting);
+  return varied_axes(all);
+}
+
 const char* judged_by(const std::vector<SettingResult>& settings) {
   const RenderSettings& first = settings.front().settings;
   const bool light = std::ranges::any_of(settings, [&](const SettingResult& s) {
@@ -197,7 +203,7 @@ SceneResult run_scene(const OpenedScene& opened, const std::string& name, const 
   References references(opened, goals.references, progress, finest_of(result.settings));
   const std::optional<Truth>& truth = references.truth(all);
   result.finest = references.description();
-  result.reference = truth ? truth->picture : references.finest(all.front()).picture;
+  result.reference = references.finest(all.front()).picture;
   if (truth) {
     result.paths = truth->paths;
     result.noise = truth->noise;
@@ -214,6 +220,12 @@ SceneResult run_scene(const OpenedScene& opened, const std::string& name, const 
                       &references.finest(s.settings),
                       truth ? &*truth : nullptr};
     s.terms = decompose(chain, result.display);
+  }
+  // A truth that is too noisy to be told from the march is no picture to hold others against.
+  const Term* light = find_term(result.settings.front().terms, kLightModel);
+  if (light && light->told()) {
+    result.reference = truth->picture;
+    result.reference_is_truth = true;
   }
   result.convergence = convergence_of(result.settings);
   result.data = data_errors(opened);

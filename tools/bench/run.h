@@ -51,14 +51,17 @@ struct VolumeDataError {
 };
 
 struct SceneResult {
-  std::string name;
+  std::vector<std::string> varied() const;  // axes with more than one value
+
+  std::string name = {};
   std::string device = {};
   std::string no_gpu_clock = {};  // why gpu times are absent; empty: they are there
   std::string finest = {};        // what the finest bricks are
   std::uint32_t paths = 0;        // a pixel, of the truth; 0: none was traced
   double noise = 0;
   Display display = {};
-  HdrImage reference = {};  // the truth, or the finest march without paths
+  HdrImage reference = {};  // what pictures are held against: the truth, or the finest march
+  bool reference_is_truth = false;
   std::vector<SettingResult> settings = {};
   std::vector<Convergence> convergence = {};
   std::vector<VolumeDataError> data = {};

@@ -141,6 +141,20 @@ std::optional<double> Setting::number(const std::string& name) const {
   return {};
 }
 
+std::string Setting::value(const std::string& name) const {
+  for (const auto& [known, text] : values)
+    if (known == name) return text;
+  return "";
+}
+
+std::vector<std::string> varied_axes(std::span<const Setting> settings) {
+  std::vector<std::string> varied;
+  for (const auto& [name, value] : settings.front().values)
+    if (std::ranges::any_of(settings, [&](const Setting& s) { return s.value(name) != value; }))
+      varied.push_back(name);
+  return varied;
+}
+
 std::vector<Setting> combinations(std::span<const Axis> axes) {
   std::size_t count = 1;
   for (std::size_t a = 0; a < axes.size(); ++a) {

@@ -28,7 +28,11 @@ struct Setting {
 
   std::string label() const;  // "step 0.5, budget-mib 64"; "as the scene says" without any
   std::optional<double> number(const std::string& name) const;  // absent: not set, or a word
+  std::string value(const std::string& name) const;             // "": not set
 };
+
+// Without what is the same in all of them: a sweep of one value holds it fast.
+std::vector<std::string> varied_axes(std::span<const Setting> settings);
 
 inline constexpr std::size_t kMostSettings = 500;
 

@@ -63,7 +63,8 @@ Term measure(const char* name, const HdrImage& picture, const HdrImage& truth, c
 #endif
   if (!told) {
     term.withheld = why_withheld(term.rms, doubt);
-    term.below = std::max(least, d.relative_rms);
+    // Noise bounds nothing that is worth saying.
+    if (kLeastRatio * doubt.noise <= term.rms) term.below = std::max(least, d.relative_rms);
     term.rms = 0;
     return term;
   }

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "bench/csv.h"
+#include "bench/markdown.h"
 #include "bench/page.h"
 #include "bench/pareto.h"
 #include "bench/run.h"
@@ -55,6 +56,11 @@ bench::RunGoals goals_of(const BenchOptions& options) {
   if (options.spp)
     goals.references.most_paths =
         std::uint32_t(whole_number("--spp", *options.spp, 0, 1'000'000'000));
+  if (const std::uint32_t paths = goals.references.most_paths;
+      paths > 0 && paths < bench::kLeastPaths)
+    throw Error(
+        {"fewer than " + std::to_string(bench::kLeastPaths) + " paths do not tell their noise",
+         "--spp", "0 (no path tracing) or more", "'" + *options.spp + "'", ""});
   if (options.host_mib)
     goals.references.host_mib = number_value("--host-mib", *options.host_mib, "paths", "host_mib");
   goals.references.finest_step_voxels =
@@ -157,6 +163,11 @@ void write_report(const std::vector<bench::SceneResult>& results, const BenchOpt
       [&](const ByteImage& image) { return png ? folder.png_of(image, pictures) : std::string(); });
   folder.write("bench.csv", bench::settings_csv(results));
   folder.write("terms.csv", bench::terms_csv(results));
+  folder.write("orders.csv", bench::orders_csv(results));
+  std::string tables;
+  for (const bench::SceneResult& result : results)
+    tables += "### " + result.name + "\n\n" + bench::markdown_of(result) + "\n";
+  folder.write("tables.md", tables);
   for (const bench::SceneResult& result : results)
     if (const auto pareto = bench::pareto_of(result))
       folder.write(results.size() > 1 ? "pareto-" + result.name + ".svg" : "pareto.svg",

@@ -11,6 +11,7 @@ struct RenderOptions {
   std::vector<std::string> inputs;  // a scene, a picture with a scene in it, or data files
   std::string output;  // "": the input's name in this folder, .png (or .ppm); NAME-again for NAME
   std::optional<std::string> size, look_from, look_at, fov_deg, sun, up, metres_per_unit, grid;
+  std::optional<std::string> target_error, target_ms;
   std::optional<std::string> budget_mib, step_voxels, tolerance, fetch, light, pixels, seed,
       probe_pixels;
   std::optional<std::string> frame, fps, density_scale, exposure_ev, tone_map, max_level;

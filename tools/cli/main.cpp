@@ -27,6 +27,7 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope render wrfout_d01.nc --at 29.9,-90.1 --heading 180 --pitch 12 -o street.png
   nephoscope render gfs.grib2 --region 30,160,60,-150 -o pacific.png
   nephoscope render wrfout_d01.nc --sun 2005-08-28T23:00Z --no-planet -o evening.png
+  nephoscope render scene.json --target-error 1% -o fine.exr   the settings are chosen, and said
   nephoscope render smoke.png --engine reference --noise 1% -o true.exr   the same, path traced
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
   nephoscope info wrfout_d01.nc --check                  and how well the bricks hold it
@@ -53,7 +54,10 @@ using Text = std::optional<std::string>;
 
 void add_data_options(CLI::App& command, Text& grid, Text& up, Text& metres_per_unit,
                       Text& density_scale, Text& frame) {
-  command.add_option("--grid", grid, "name of the grid to draw (VDB)")->group("Data");
+  command
+      .add_option("--grid", grid,
+                  "name of the grid to draw (VDB); file with the cells' places (NetCDF)")
+      ->group("Data");
   command.add_option("--up", up, "up axis of the file: y or z (VDB)")->group("Data");
   command.add_option("--metres-per-unit", metres_per_unit, "size of one world unit of the file")
       ->group("Data");
@@ -97,13 +101,24 @@ void add_camera_options(CLI::App& command, RenderOptions& o) {
 void add_quality_options(CLI::App& command, RenderOptions& o) {
   const char* group = "Quality";
   command.add_option("--size", o.size, "WIDTHxHEIGHT in pixels (640x360)")->group(group);
-  command.add_option("--budget-mib", o.budget_mib, "memory on the GPU (256)")->group(group);
+  CLI::Option* budget =
+      command.add_option("--budget-mib", o.budget_mib, "memory on the GPU (256)")->group(group);
   CLI::Option* step =
       command.add_option("--step", o.step_voxels, "fixed step in voxels; 0 = exact per cell");
-  command.add_option("--tolerance", o.tolerance, "relative error that a step may make (0.01)")
-      ->excludes(step)
-      ->group(group);
+  CLI::Option* tolerance =
+      command.add_option("--tolerance", o.tolerance, "relative error that a step may make (0.01)")
+          ->excludes(step)
+          ->group(group);
   step->group(group);
+  CLI::Option* error = command.add_option(
+      "--target-error", o.target_error,
+      "choose tolerance and budget: the cheapest with an error below this, such as 1%");
+  CLI::Option* time = command.add_option(
+      "--target-ms", o.target_ms,
+      "choose them: the most accurate whose light passes and view take no longer");
+  for (CLI::Option* target : {error, time})
+    target->excludes(step)->excludes(tolerance)->excludes(budget)->group(group);
+  error->excludes(time);
   command.add_option("--fetch", o.fetch, "filter (the texture unit) or texels8 (exact)")
       ->group(group);
   command.add_option("--light", o.light, "octaves or single (scattering)")->group(group);

@@ -5,6 +5,7 @@
 #include "cli/reference_picture.h"
 #include "cli/report.h"
 #include "cli/scene_input.h"
+#include "cli/target_picture.h"
 #include "common/gl_context.h"
 #include "common/open_scene.h"
 #include "common/output_file.h"
@@ -59,13 +60,13 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-void print_result(const fs::path& output, const OpenedScene& opened, const std::string& error,
-                  bool exposure_found) {
+void print_result(const fs::path& output, const OpenedScene& opened,
+                  const std::vector<std::string>& said, bool exposure_found) {
   const RenderSettings& settings = opened.scene.render;
   const Usage usage = usage_now();
   std::printf("%s: %dx%d, exposure %+.2f EV%s\n", output.c_str(), settings.width, settings.height,
               *opened.scene.exposure_ev, exposure_found ? " (from the picture)" : "");
-  std::printf("%s\n", error.c_str());
+  for (const std::string& line : said) std::printf("%s\n", line.c_str());
   for (const std::string& text : opened.assumptions) std::printf("assumed: %s\n", text.c_str());
   std::printf("time: %.2f s CPU, %.2f s from launch to picture; peak memory %.0f MiB\n",
               usage.cpu_s, usage.wall_s, usage.peak_mib);
@@ -92,6 +93,7 @@ void render_command(const RenderOptions& options) {
   Libraries libraries;
   libraries.start = mapped_libraries();
   pictures.check_format(output);
+  check_target(scene.target, scene, format);
   libraries.format_known = mapped_libraries();
   // Before any work: what cannot be written later is known now.
   OutputFile file(output, largest_size(scene.render, format));
@@ -102,8 +104,14 @@ void render_command(const RenderOptions& options) {
   refuse_idle_options(options, scene, opened);
   libraries.scene_open = mapped_libraries();
 
-  const ReferencePicture drawn =
-      march ? ReferencePicture{render(opened.request), ""} : draw_reference(opened);
+  std::string target;
+  const ReferencePicture drawn = [&]() -> ReferencePicture {
+    if (!march) return draw_reference(opened);
+    if (!opened.scene.target) return {render(opened.request), ""};
+    TargetPicture picture = draw_for_target(opened);
+    target = std::move(picture.line);
+    return {std::move(picture.result), ""};
+  }();
   const RenderResult& result = drawn.result;
   const FloatImage linear = linear_image(result.image);
   const bool find_exposure = !opened.scene.exposure_ev;
@@ -118,15 +126,17 @@ void render_command(const RenderOptions& options) {
                               : to_display(linear, *opened.scene.exposure_ev, opened.scene.tone_map,
                                            opened.scene.dither, white);
   const std::string error = march ? error_line(result.error) : drawn.error_line;
-  pictures.write(
-      file.temporary(), format, shown, linear,
-      {{"nephoscope:scene", write_scene(opened.scene, fs::absolute(output).parent_path())},
-       {"nephoscope:error", error},
-       {"nephoscope:assumptions", joined(opened.assumptions)},
-       {"nephoscope:version", NEPHO_VERSION}});
+  Metadata metadata{
+      {"nephoscope:scene", write_scene(opened.scene, fs::absolute(output).parent_path())},
+      {"nephoscope:error", error},
+      {"nephoscope:assumptions", joined(opened.assumptions)},
+      {"nephoscope:version", NEPHO_VERSION}};
+  std::vector<std::string> said{error};
+  if (!target.empty()) metadata["nephoscope:target"] = target, said.push_back(target);
+  pictures.write(file.temporary(), format, shown, linear, metadata);
   file.commit();
   libraries.picture_written = mapped_libraries();
-  print_result(output, opened, error, find_exposure);
+  print_result(output, opened, said, find_exposure);
   if (options.explain || options.explain_all)
     std::printf("%s", explanation(opened, result, context ? context->description() : "none",
                                   libraries, options.explain_all)

@@ -19,15 +19,6 @@ std::string format(const char* pattern, auto... values) {
   return text;
 }
 
-std::string percent(double part) {
-  if (part < 0) return "not measured";
-  // Two digits, and no exponent where a reader can do without.
-  char text[32];
-  const double value = 100 * part;
-  std::snprintf(text, sizeof text, value >= 9.95 ? "%.0f %%" : "%.2g %%", value);
-  return text;
-}
-
 std::string mib(std::uint64_t bytes) {
   return format("%.2f MiB", double(bytes) / (1 << 20));
 }
@@ -103,6 +94,15 @@ std::vector<std::string> grouped(const std::vector<std::string>& libraries) {
 
 }  // namespace
 
+std::string percent_text(double part) {
+  if (part < 0) return "not measured";
+  // Two digits, and no exponent where a reader can do without.
+  char text[32];
+  const double value = 100 * part;
+  std::snprintf(text, sizeof text, value >= 9.95 ? "%.0f %%" : "%.2g %%", value);
+  return text;
+}
+
 std::vector<std::string> mapped_libraries() {
   std::ifstream maps("/proc/self/maps");
   std::vector<std::string> names;
@@ -117,9 +117,10 @@ std::vector<std::string> mapped_libraries() {
 }
 
 std::string error_line(const ErrorEstimate& error) {
-  std::string line = "error (estimated): integration " + percent(error.integration) +
-                     ", level of detail " + percent(error.level_of_detail) + ", quantisation " +
-                     percent(error.quantisation) + ", light model " + percent(error.light_model);
+  std::string line = "error (estimated): integration " + percent_text(error.integration) +
+                     ", level of detail " + percent_text(error.level_of_detail) +
+                     ", quantisation " + percent_text(error.quantisation) + ", light model " +
+                     percent_text(error.light_model);
   if (!error.light_model_basis.empty()) line += " (" + error.light_model_basis + ")";
   return line;
 }

@@ -12,6 +12,9 @@ namespace nepho {
 // 30 % (16 paths a pixel)": what every render prints and stores.
 std::string error_line(const ErrorEstimate& error);
 
+// "1.2 %": two digits.
+std::string percent_text(double part);
+
 // Process so far: CPU of all threads, time since its start, largest resident size.
 struct Usage {
   double cpu_s = 0, wall_s = 0, peak_mib = 0;

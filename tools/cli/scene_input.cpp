@@ -183,6 +183,14 @@ void apply_quality(Scene& scene, const RenderOptions& o) {
   }
   if (o.budget_mib)
     settings.budget_mib = number_value("--budget-mib", *o.budget_mib, "render", "budget_mib");
+  // What is given outranks a scene's target, and the other way round.
+  if (o.budget_mib || o.step_voxels || o.tolerance || o.target_error || o.target_ms)
+    scene.target = {};
+  if (o.target_error)
+    scene.target.error = share_value("--target-error", *o.target_error, "render", "target_error");
+  if (o.target_ms)
+    scene.target.frame_ms = number_value("--target-ms", *o.target_ms, "render", "target_ms");
+  if (scene.target) settings.step_voxels.reset();
   if (o.step_voxels)
     settings.step_voxels = number_value("--step", *o.step_voxels, "render", "step_voxels");
   if (o.tolerance) {
@@ -235,8 +243,11 @@ void apply_paths(Scene& scene, const RenderOptions& o) {
                 {"--fetch", &o.fetch},
                 {"--light", &o.light},
                 {"--pixels", &o.pixels},
+                {"--target-error", &o.target_error},
+                {"--target-ms", &o.target_ms},
                 {"--probe-pixels", &o.probe_pixels}},
                "--engine march", "the reference");
+  scene.target = {};
   // One goal on the command line replaces both of a scene.
   if (o.spp || o.noise) paths.samples = 0, paths.noise = 0;
   if (o.spp) paths.samples = integer_value("--spp", *o.spp, "paths", "spp");

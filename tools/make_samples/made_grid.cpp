@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "lambert.h"
+#include "made_cells.h"
 #include "made_maps.h"
 
 namespace nepho::samples {
@@ -14,13 +15,6 @@ namespace {
 constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr std::size_t kNx = 24, kNy = 20, kI = 6, kJ = 13;  // cells, and the cloud's middle one
 constexpr double kSphere_m = 6371000;
-
-NcNote text(const char* name, const std::string& value) {
-  return {name, value};
-}
-NcNote real(const char* name, std::vector<double> values) {
-  return {name, "", std::move(values), NcValue::kDouble};
-}
 
 std::vector<double> steps(double first, double step, std::size_t count) {
   std::vector<double> all;
@@ -74,16 +68,16 @@ MadeGrid of_map(const std::string& name, const MapAxes& axes, std::vector<NcNote
   MadeGrid grid = of_rows(name, {axes.y, axes.x}, [=](double x, double y) {
     return inverse(axes.first + axes.step * glm::dvec2(x, y));
   });
-  grid.notes = {text("grid_mapping", "crs")};
+  grid.notes = {text_note("grid_mapping", "crs")};
   grid.write = [=](TinyFile& file) {
     const auto centres = [&](int a, std::size_t n) {
       return steps((axes.first[a] + 0.5 * axes.step[a]) / axes.to_unit, axes.step[a] / axes.to_unit,
                    n);
     };
     add_axis(file, axes.y, centres(1, kNy),
-             {text("standard_name", axes.y_standard), text("units", axes.unit)});
+             {text_note("standard_name", axes.y_standard), text_note("units", axes.unit)});
     add_axis(file, axes.x, centres(0, kNx),
-             {text("standard_name", axes.x_standard), text("units", axes.unit)});
+             {text_note("standard_name", axes.x_standard), text_note("units", axes.unit)});
     file.add({"crs", NcValue::kInt, {}, mapping}, {0});
   };
   return grid;
@@ -112,8 +106,8 @@ MadeGrid of_axes(const std::string& name, std::vector<double> lat_edge, double w
       if (value < written_turn_deg) value += 360;
     for (double& value : lon)
       if (value >= written_turn_deg + 360) value -= 360;
-    add_axis(file, "lat", lat, {text("units", "degrees_north")});
-    add_axis(file, "lon", lon, {text("units", "degrees_east")});
+    add_axis(file, "lat", lat, {text_note("units", "degrees_north")});
+    add_axis(file, "lon", lon, {text_note("units", "degrees_east")});
   };
   return grid;
 }
@@ -151,7 +145,7 @@ MadeGrid gaussian() {
 MadeGrid of_fields(const std::string& name, const std::function<glm::dvec2(double, double)>& place,
                    bool corners) {
   MadeGrid grid = of_rows(name, {"nj", "ni"}, place);
-  grid.notes = {text("coordinates", "lat lon")};
+  grid.notes = {text_note("coordinates", "lat lon")};
   grid.write = [=](TinyFile& file) {
     file.layout.axes.insert(file.layout.axes.end(), {{"nj", kNy}, {"ni", kNx}, {"nv", 4}});
     std::vector<double> centre[2], corner[2];
@@ -168,8 +162,8 @@ MadeGrid of_fields(const std::string& name, const std::function<glm::dvec2(doubl
     const char* const units[2] = {"degrees_north", "degrees_east"};
     for (int a = 0; a < 2; ++a) {
       const std::string bounds = std::string(names[a]) + "_bnds";
-      std::vector<NcNote> notes = {text("units", units[a])};
-      if (corners) notes.push_back(text("bounds", bounds));
+      std::vector<NcNote> notes = {text_note("units", units[a])};
+      if (corners) notes.push_back(text_note("bounds", bounds));
       file.add({names[a], NcValue::kDouble, {"nj", "ni"}, notes}, centre[a]);
       if (corners) file.add({bounds, NcValue::kDouble, {"nj", "ni", "nv"}, {}}, corner[a]);
     }
@@ -177,150 +171,9 @@ MadeGrid of_fields(const std::string& name, const std::function<glm::dvec2(doubl
   return grid;
 }
 
-// Squares of a turned grid, each cut in two: triangles.
-constexpr std::size_t kTriangles = 2 * kNx * kNy;
-glm::dvec2 turned(double x, double y) {
-  return from_rotated({42, 160}, 0, {0.2 * x - 2.4, 0.2 * y - 2});
-}
-std::array<glm::dvec2, 3> triangle(std::size_t n) {
-  const double x = double(n / 2 % kNx), y = double(n / 2 / kNx);
-  if (n % 2) return {glm::dvec2(x + 1, y + 1), {x, y + 1}, {x + 1, y}};
-  return {glm::dvec2(x, y), {x + 1, y}, {x, y + 1}};
-}
-
-MadeGrid of_cells(const std::string& name, std::size_t cells, std::size_t cloudy,
-                  const std::function<MadeCell(std::size_t)>& cell) {
-  MadeGrid grid;
-  grid.name = name;
-  grid.axes = {"ncells"};
-  grid.nx = cells, grid.ny = 1;
-  grid.cell = cell;
-  grid.cloudy = {cloudy};
-  return grid;
-}
-
-MadeCell triangle_cell(std::size_t n) {
-  const auto corner = triangle(n);
-  const glm::dvec2 middle = (corner[0] + corner[1] + corner[2]) / 3.0;
-  MadeCell cell{turned(middle.x, middle.y), {}};
-  for (const glm::dvec2& p : corner) cell.outline_deg.push_back(turned(p.x, p.y));
-  return cell;
-}
-
-void add_cells(TinyFile& file, const MadeGrid& grid, const char* lat, const char* lon,
-               std::vector<NcNote> notes, double to_unit) {
-  file.layout.axes.push_back({"ncells", grid.nx});
-  std::vector<double> y, x;
-  for (std::size_t n = 0; n < grid.nx; ++n) {
-    y.push_back(grid.cell(n).centre_deg.x * to_unit);
-    x.push_back(grid.cell(n).centre_deg.y * to_unit);
-  }
-  std::vector<NcNote> lat_notes = notes, lon_notes = notes;
-  if (!notes.empty()) {
-    lat_notes.push_back(text("bounds", std::string(lat) + "_bnds"));
-    lon_notes.push_back(text("bounds", std::string(lon) + "_bnds"));
-  }
-  file.add({lat, NcValue::kDouble, {"ncells"}, lat_notes}, y);
-  file.add({lon, NcValue::kDouble, {"ncells"}, lon_notes}, x);
-}
-
-MadeGrid icon() {  // triangles with their corners, in radians
-  MadeGrid grid = of_cells("icon", kTriangles, 2 * (kJ * kNx + kI), triangle_cell);
-  grid.notes = {text("CDI_grid_type", "unstructured"), text("coordinates", "clat clon")};
-  grid.write = [grid](TinyFile& file) {
-    add_cells(file, grid, "clat", "clon", {text("units", "radian")}, kDegree);
-    file.layout.axes.push_back({"vertices", 3});
-    std::vector<double> y, x;
-    for (std::size_t n = 0; n < grid.nx; ++n)
-      for (const glm::dvec2& p : grid.cell(n).outline_deg) {
-        y.push_back(p.x * kDegree);
-        x.push_back(p.y * kDegree);
-      }
-    file.add({"clat_bnds", NcValue::kDouble, {"ncells", "vertices"}, {}}, y);
-    file.add({"clon_bnds", NcValue::kDouble, {"ncells", "vertices"}, {}}, x);
-  };
-  return grid;
-}
-
-// Corners by number, as MPAS and UGRID have them: numbers from 1, and from 0 with a mesh topology.
-MadeGrid by_numbers(const std::string& name, bool ugrid) {
-  MadeGrid grid = of_cells(name, kTriangles, 2 * (kJ * kNx + kI) + 1, triangle_cell);
-  if (ugrid) grid.notes = {text("mesh", "mesh"), text("location", "face")};
-  if (!ugrid) grid.axes = {"ncells"};
-  grid.write = [=](TinyFile& file) {
-    add_cells(file, grid, ugrid ? "face_lat" : "latCell", ugrid ? "face_lon" : "lonCell", {},
-              ugrid ? 1 : kDegree);
-    const std::size_t points = (kNx + 1) * (kNy + 1), most = ugrid ? 3 : 6;
-    file.layout.axes.insert(file.layout.axes.end(), {{"points", points}, {"corners", most}});
-    std::vector<double> lat, lon, number, count(grid.nx, 3);
-    for (std::size_t n = 0; n < points; ++n) {
-      const glm::dvec2 p = turned(double(n % (kNx + 1)), double(n / (kNx + 1)));
-      lat.push_back(p.x * (ugrid ? 1 : kDegree));
-      lon.push_back(p.y * (ugrid ? 1 : kDegree));
-    }
-    for (std::size_t n = 0; n < grid.nx; ++n) {
-      for (const glm::dvec2& p : triangle(n))
-        number.push_back(p.y * (kNx + 1) + p.x + (ugrid ? 0 : 1));
-      for (std::size_t v = 3; v < most; ++v) number.push_back(ugrid ? -1 : number.back());
-    }
-    const std::vector<NcNote> north = {text("units", "degrees_north")},
-                              east = {text("units", "degrees_east")};
-    file.add({ugrid ? "node_lat" : "latVertex",
-              NcValue::kDouble,
-              {"points"},
-              ugrid ? north : std::vector<NcNote>{}},
-             lat);
-    file.add({ugrid ? "node_lon" : "lonVertex",
-              NcValue::kDouble,
-              {"points"},
-              ugrid ? east : std::vector<NcNote>{}},
-             lon);
-    file.add({ugrid ? "face_nodes" : "verticesOnCell",
-              NcValue::kInt,
-              {"ncells", "corners"},
-              {{"start_index", "", {0}, NcValue::kInt}}},
-             number);
-    if (ugrid) {
-      file.layout.set_note("face_lat", north[0]), file.layout.set_note("face_lon", east[0]);
-      file.add({"mesh",
-                NcValue::kInt,
-                {},
-                {text("cf_role", "mesh_topology"), text("face_node_connectivity", "face_nodes"),
-                 text("node_coordinates", "node_lon node_lat")}},
-               {0});
-    } else {
-      file.add({"nEdgesOnCell", NcValue::kInt, {"ncells"}, {}}, count);
-    }
-  };
-  return grid;
-}
-
-// Centres alone, six neighbours each: their cells are hexagons.
-MadeGrid hexagons() {
-  constexpr double kSpacing_deg = 0.2;
-  const auto place = [](double x, double y) {
-    return from_rotated({30, -100}, 0, {kSpacing_deg * x, kSpacing_deg * y});
-  };
-  MadeGrid grid = of_cells("centres", kNx * kNy, kJ * kNx + kI, [=](std::size_t n) {
-    const double row = std::sqrt(0.75), j = double(n / kNx);
-    const glm::dvec2 c = {double(n % kNx) - 12 + 0.5 * std::fmod(j, 2.0), (j - 10) * row};
-    MadeCell cell{place(c.x, c.y), {}};
-    for (int corner = 0; corner < 6; ++corner) {
-      const double angle = (60 * corner + 30) * kDegree, out = 1 / std::sqrt(3.0);
-      cell.outline_deg.push_back(place(c.x + out * std::cos(angle), c.y + out * std::sin(angle)));
-    }
-    return cell;
-  });
-  grid.write = [grid](TinyFile& file) {
-    add_cells(file, grid, "lat", "lon", {}, 1);
-    file.layout.set_note("lat", text("units", "degrees_north"));
-    file.layout.set_note("lon", text("units", "degrees_east"));
-  };
-  return grid;
-}
-
 std::vector<NcNote> on_sphere(const char* name, std::vector<NcNote> more) {
-  more.insert(more.begin(), {text("grid_mapping_name", name), real("earth_radius", {kSphere_m})});
+  more.insert(more.begin(),
+              {text_note("grid_mapping_name", name), real_note("earth_radius", {kSphere_m})});
   return more;
 }
 
@@ -332,9 +185,10 @@ MadeGrid lambert(const std::string& name, double parallel1, double parallel2) {
   axes.unit = "km", axes.to_unit = 1000;
   return of_map(
       name, axes,
-      {text("grid_mapping_name", "lambert_conformal_conic"),
-       real("earth_radius", {Lambert::kSphere_m}), real("standard_parallel", parallels),
-       real("latitude_of_projection_origin", {39}), real("longitude_of_central_meridian", {-97})},
+      {text_note("grid_mapping_name", "lambert_conformal_conic"),
+       real_note("earth_radius", {Lambert::kSphere_m}), real_note("standard_parallel", parallels),
+       real_note("latitude_of_projection_origin", {39}),
+       real_note("longitude_of_central_meridian", {-97})},
       [=](glm::dvec2 m) { return map.lat_lon_deg(m.x, m.y); });
 }
 
@@ -345,10 +199,11 @@ MadeGrid geostationary(const std::string& name, bool sweep_x) {
   if (!sweep_x) axes.first = {-0.03, 0.09};
   return of_map(
       name, axes,
-      {text("grid_mapping_name", "geostationary"), real("perspective_point_height", {kHeight_m}),
-       real("semi_major_axis", {6378137}), real("semi_minor_axis", {6356752.31414}),
-       real("longitude_of_projection_origin", {-75}),
-       text("sweep_angle_axis", sweep_x ? "x" : "y")},
+      {text_note("grid_mapping_name", "geostationary"),
+       real_note("perspective_point_height", {kHeight_m}), real_note("semi_major_axis", {6378137}),
+       real_note("semi_minor_axis", {6356752.31414}),
+       real_note("longitude_of_projection_origin", {-75}),
+       text_note("sweep_angle_axis", sweep_x ? "x" : "y")},
       [=](glm::dvec2 angle) { return from_view(-75, kHeight_m, sweep_x, angle); });
 }
 
@@ -372,88 +227,89 @@ std::vector<Entry> maps() {
        [](const std::string& name) {
          MapAxes axes{{-2.4, 5}, glm::dvec2(0.2), "degrees",        1,
                       "rlon",    "rlat",          "grid_longitude", "grid_latitude"};
-         return of_map(
-             name, axes,
-             {text("grid_mapping_name", "rotated_latitude_longitude"),
-              real("grid_north_pole_latitude", {39.25}), real("grid_north_pole_longitude", {-162}),
-              real("north_pole_grid_longitude", {20})},
-             [](glm::dvec2 d) {
-               return from_rotated({39.25, -162}, 20, d);
-             });
+         return of_map(name, axes,
+                       {text_note("grid_mapping_name", "rotated_latitude_longitude"),
+                        real_note("grid_north_pole_latitude", {39.25}),
+                        real_note("grid_north_pole_longitude", {-162}),
+                        real_note("north_pole_grid_longitude", {20})},
+                       [](glm::dvec2 d) {
+                         return from_rotated({39.25, -162}, 20, d);
+                       });
        }},
       {"lambert1", [](const std::string& name) { return lambert(name, 39, 39); }},
       {"lambert2", [](const std::string& name) { return lambert(name, 30, 60); }},
       {"mercator",
        [](const std::string& name) {
-         return of_map(
-             name, in_metres({-200e3, 1500e3}),
-             on_sphere("mercator", {real("standard_parallel", {20}), real("false_easting", {50e3}),
-                                    real("longitude_of_projection_origin", {179})}),
-             [](glm::dvec2 m) {
-               return from_mercator({kSphere_m, 0, 179}, 20, {m.x - 50e3, m.y});
-             });
+         return of_map(name, in_metres({-200e3, 1500e3}),
+                       on_sphere("mercator", {real_note("standard_parallel", {20}),
+                                              real_note("false_easting", {50e3}),
+                                              real_note("longitude_of_projection_origin", {179})}),
+                       [](glm::dvec2 m) {
+                         return from_mercator({kSphere_m, 0, 179}, 20, {m.x - 50e3, m.y});
+                       });
        }},
       {"polar_north",
        [](const std::string& name) {
-         return of_map(
-             name, in_metres({-300e3, -250e3}),
-             {text("grid_mapping_name", "polar_stereographic"), real("semi_major_axis", {6378137}),
-              real("inverse_flattening", {298.257223563}),
-              real("latitude_of_projection_origin", {90}),
-              real("straight_vertical_longitude_from_pole", {-45}),
-              real("standard_parallel", {70})},
-             [](glm::dvec2 m) {
-               return from_polar({6378137, 1 / 298.257223563, -45, 70, 0, false}, m);
-             });
+         return of_map(name, in_metres({-300e3, -250e3}),
+                       {text_note("grid_mapping_name", "polar_stereographic"),
+                        real_note("semi_major_axis", {6378137}),
+                        real_note("inverse_flattening", {298.257223563}),
+                        real_note("latitude_of_projection_origin", {90}),
+                        real_note("straight_vertical_longitude_from_pole", {-45}),
+                        real_note("standard_parallel", {70})},
+                       [](glm::dvec2 m) {
+                         return from_polar({6378137, 1 / 298.257223563, -45, 70, 0, false}, m);
+                       });
        }},
       {"polar_south",
        [](const std::string& name) {
-         return of_map(
-             name, in_metres({-900e3, 1200e3}),
-             on_sphere("polar_stereographic", {real("latitude_of_projection_origin", {-90}),
-                                               real("straight_vertical_longitude_from_pole", {30}),
-                                               real("scale_factor_at_projection_origin", {0.97})}),
-             [](glm::dvec2 m) {
-               return from_polar({kSphere_m, 0, 30, 0, 0.97, true}, m);
-             });
+         return of_map(name, in_metres({-900e3, 1200e3}),
+                       on_sphere("polar_stereographic",
+                                 {real_note("latitude_of_projection_origin", {-90}),
+                                  real_note("straight_vertical_longitude_from_pole", {30}),
+                                  real_note("scale_factor_at_projection_origin", {0.97})}),
+                       [](glm::dvec2 m) {
+                         return from_polar({kSphere_m, 0, 30, 0, 0.97, true}, m);
+                       });
        }},
       {"equal_area",
        [](const std::string& name) {
          return of_map(name, in_metres({200e3, -700e3}),
                        on_sphere("lambert_azimuthal_equal_area",
-                                 {real("latitude_of_projection_origin", {52}),
-                                  real("longitude_of_projection_origin", {10})}),
+                                 {real_note("latitude_of_projection_origin", {52}),
+                                  real_note("longitude_of_projection_origin", {10})}),
                        [](glm::dvec2 m) {
                          return from_equal_area({kSphere_m, 52, 10}, m);
                        });
        }},
       {"wkt",
        [](const std::string& name) {
-         return of_map(name, in_metres({200e3, -700e3}), {text("crs_wkt", kWkt)}, [](glm::dvec2 m) {
-           return from_equal_area({kSphere_m, 52, 10}, m);
-         });
+         return of_map(name, in_metres({200e3, -700e3}), {text_note("crs_wkt", kWkt)},
+                       [](glm::dvec2 m) {
+                         return from_equal_area({kSphere_m, 52, 10}, m);
+                       });
        }},
       {"stereographic",
        [](const std::string& name) {
          return of_map(
              name, in_metres({-500e3, 100e3}),
-             on_sphere("stereographic", {real("latitude_of_projection_origin", {47}),
-                                         real("longitude_of_projection_origin", {8}),
-                                         real("scale_factor_at_projection_origin", {0.99})}),
+             on_sphere("stereographic", {real_note("latitude_of_projection_origin", {47}),
+                                         real_note("longitude_of_projection_origin", {8}),
+                                         real_note("scale_factor_at_projection_origin", {0.99})}),
              [](glm::dvec2 m) {
                return from_stereographic({kSphere_m, 47, 8}, 0.99, m);
              });
        }},
       {"transverse",
        [](const std::string& name) {
-         return of_map(
-             name, in_metres({-300e3, 400e3}),
-             on_sphere("transverse_mercator", {real("latitude_of_projection_origin", {40}),
-                                               real("longitude_of_central_meridian", {9}),
-                                               real("scale_factor_at_central_meridian", {0.9996})}),
-             [](glm::dvec2 m) {
-               return from_transverse({kSphere_m, 40, 9}, 0.9996, m);
-             });
+         return of_map(name, in_metres({-300e3, 400e3}),
+                       on_sphere("transverse_mercator",
+                                 {real_note("latitude_of_projection_origin", {40}),
+                                  real_note("longitude_of_central_meridian", {9}),
+                                  real_note("scale_factor_at_central_meridian", {0.9996})}),
+                       [](glm::dvec2 m) {
+                         return from_transverse({kSphere_m, 40, 9}, 0.9996, m);
+                       });
        }},
       {"goes", [](const std::string& name) { return geostationary(name, true); }},
       {"meteosat", [](const std::string& name) { return geostationary(name, false); }}};
@@ -489,10 +345,10 @@ std::vector<Entry> entries() {
              true);
        }}};
   for (Entry& entry : maps()) all.push_back(std::move(entry));
-  all.push_back({"icon", [](const std::string&) { return icon(); }});
-  all.push_back({"mpas", [](const std::string& name) { return by_numbers(name, false); }});
-  all.push_back({"ugrid", [](const std::string& name) { return by_numbers(name, true); }});
-  all.push_back({"centres", [](const std::string&) { return hexagons(); }});
+  all.push_back({"icon", [](const std::string&) { return made_icon(); }});
+  all.push_back({"mpas", [](const std::string& name) { return made_numbers(name, false); }});
+  all.push_back({"ugrid", [](const std::string& name) { return made_numbers(name, true); }});
+  all.push_back({"centres", [](const std::string&) { return made_hexagons(); }});
   return all;
 }
 

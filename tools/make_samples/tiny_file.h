@@ -9,6 +9,14 @@
 
 namespace nepho::samples {
 
+// Attributes of text and of numbers.
+inline NcNote text_note(const char* name, const std::string& value) {
+  return {name, value};
+}
+inline NcNote real_note(const char* name, std::vector<double> values) {
+  return {name, "", std::move(values), NcValue::kDouble};
+}
+
 // A whole file in memory, to be changed before it is written.
 struct TinyFile {
   NcLayout layout;

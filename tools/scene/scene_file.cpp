@@ -242,6 +242,18 @@ void read_render(const ObjectReader& in, RenderSettings& settings) {
   }
 }
 
+PictureTarget read_target(const ObjectReader& in) {
+  for (const std::string_view target : {"target_error", "target_ms"})
+    for (const std::string_view chosen : {"tolerance", "step_voxels", "budget_mib"})
+      in.at_most_one({target, chosen});
+  in.at_most_one({"target_error", "target_ms"});
+  PictureTarget target{in.number("target_error"), in.number("target_ms")};
+  if (target && in.text("engine").value_or("march") == "reference")
+    throw Error({"nothing to choose", in.where("engine"), "the march with a target",
+                 "the reference", "the reference's goals are \"paths\": spp, noise"});
+  return target;
+}
+
 // Where the camera looks, for scenes on a globe that give no place of their own.
 std::optional<GeodeticPlace> camera_point(const ObjectReader& in) {
   if (const auto camera = in.object("camera"))
@@ -283,7 +295,10 @@ Scene parse_scene(std::string_view text, const std::string& source_name,
     scene.render.width = image->integer("width").value_or(scene.render.width);
     scene.render.height = image->integer("height").value_or(scene.render.height);
   }
-  if (const auto render = in.object("render")) read_render(*render, scene.render);
+  if (const auto render = in.object("render")) {
+    read_render(*render, scene.render);
+    scene.target = read_target(*render);
+  }
   scene.exposure_ev = in.number("exposure_ev");
   if (const auto tone_map = in.text("tone_map"))
     scene.tone_map = *tone_map == "none" ? ToneMap::kNone : ToneMap::kAces;

@@ -126,6 +126,8 @@ constexpr ObjectGrammar kPaths{"paths", kPathsFields};
 
 constexpr FieldGrammar kRenderFields[] = {
     {"budget_mib", kNumber, 0.001, 1e6},
+    {"target_error", kNumber, 1e-4, 1},
+    {"target_ms", kNumber, 1e-3, 1e9},
     {"step_voxels", kNumber, 0, 1024},
     {"tolerance", kNumber, 1e-6, 1},
     {"fetch", kChoice, 0, 0, "filter|texels8"},

@@ -159,6 +159,11 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
     out["planet"] = write_planet(*scene.planet);
   out["image"] = {{"width", scene.render.width}, {"height", scene.render.height}};
   out["render"] = write_render(scene.render);
+  if (scene.target)
+    for (const char* chosen : {"tolerance", "step_voxels", "budget_mib"})
+      out["render"].erase(chosen);
+  if (scene.target.error) out["render"]["target_error"] = *scene.target.error;
+  if (scene.target.frame_ms) out["render"]["target_ms"] = *scene.target.frame_ms;
   if (scene.exposure_ev) out["exposure_ev"] = *scene.exposure_ev;
   out["tone_map"] = scene.tone_map == ToneMap::kNone ? "none" : "aces";
   if (scene.dither) out["dither"] = "ordered";

@@ -29,7 +29,7 @@ struct GridSearch::PolygonCells {
       left += side > 0;
       right += side < 0;
     }
-    return left == 0 || right == 0;
+    return end > begin && (left == 0 || right == 0);
   }
 };
 
@@ -59,7 +59,8 @@ GridSearch::GridSearch(std::shared_ptr<const HorizontalGrid> grid) : grid_(std::
     glm::dvec3 sum(0.0);
     for (int n = 0; n < grid_->nx(); ++n) {
       centres.push_back(direction({n + 0.5, 0.5}));
-      sum += centres.back();
+      const std::size_t cell = std::size_t(n);
+      if (polygons->first[cell + 1] > polygons->first[cell]) sum += centres.back();
     }
     cells_ = std::make_shared<const PolygonCells>(
         PolygonCells{NearestPlaces(std::move(centres)), *polygons});

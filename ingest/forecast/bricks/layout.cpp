@@ -24,12 +24,13 @@ std::vector<CellSize> some_cells(const HorizontalGrid& grid) {
   const double radius_m = Ellipsoid::wgs84().equatorial_m;
   std::vector<CellSize> sizes;
   if (const CellPolygons* polygons = grid.polygons()) {
-    const std::size_t cells = polygons->first.size() - 1,
-                      step = std::max<std::size_t>(1, cells / 1024);
-    for (std::size_t cell = 0; cell < cells; cell += step) {
-      const double width_m = radius_m * polygon_width_rad(*polygons, cell);
-      sizes.push_back({width_m, width_m * width_m});
-    }
+    const std::size_t cells = polygons->first.size() - 1;
+    // Cells without corners are of no size: all are looked at where none of some has any.
+    for (std::size_t step = std::max<std::size_t>(1, cells / 1024); sizes.empty() && step > 0;
+         step = step > 1 ? 1 : 0)
+      for (std::size_t cell = 0; cell < cells; cell += step)
+        if (const double width_m = radius_m * polygon_width_rad(*polygons, cell); width_m > 0)
+          sizes.push_back({width_m, width_m * width_m});
     return sizes;
   }
   const int step_x = std::max(1, grid.nx() / 32), step_y = std::max(1, grid.ny() / 32);

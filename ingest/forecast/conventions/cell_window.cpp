@@ -26,6 +26,7 @@ struct CellExtent {
   Extent latitude_deg, longitude_deg;
 };
 CellExtent extent_of(std::span<const glm::dvec2> corner) {
+  if (corner.empty()) return {{NAN, NAN}, {NAN, NAN}};
   for (const glm::dvec2& place : corner)
     if (std::isnan(place.x)) return {{NAN, NAN}, {NAN, NAN}};
   CellExtent e{{corner[0].x, corner[0].x}, {corner[0].y, corner[0].y}};
@@ -64,11 +65,14 @@ bool overlap(const CellExtent& cell, const Region& region) {
 
 void mark(const HorizontalGrid& grid, const Region& region, Marks& marks) {
   if (const CellPolygons* polygons = grid.polygons()) {
-    for (std::size_t cell = 0; cell + 1 < polygons->first.size(); ++cell)
-      if (overlap(extent_of({&polygons->corner_deg[polygons->first[cell]],
-                             &polygons->corner_deg[0] + polygons->first[cell + 1]}),
-                  region))
-        marks.rows[0] = marks.columns[cell] = 1;
+    for (std::size_t cell = 0; cell + 1 < polygons->first.size(); ++cell) {
+      CellExtent extent = extent_of({polygons->corner_deg.data() + polygons->first[cell],
+                                     polygons->corner_deg.data() + polygons->first[cell + 1]});
+      // And those beside them: a cell is about as wide as its neighbours.
+      for (Extent* e : {&extent.latitude_deg, &extent.longitude_deg})
+        *e = {2 * e->low - e->high, 2 * e->high - e->low};
+      if (overlap(extent, region)) marks.rows[0] = marks.columns[cell] = 1;
+    }
     return;
   }
   const auto nx = std::size_t(grid.nx());
@@ -212,18 +216,26 @@ CellWindow window_of(std::span<const std::shared_ptr<const HorizontalGrid>> grid
                  "a region that overlaps the file's " + bounds_text(first), to_text(region), ""});
   const Run rows = run_of(marks.rows);
   const Run columns = first.around() ? run_around(marks.columns) : run_of(marks.columns);
-  return {columns.first, rows.first, columns.count, rows.count};
+  CellWindow window{columns.first, rows.first, columns.count, rows.count, {}};
+  if (first.polygons())
+    window.inside.assign(marks.columns.begin() + columns.first,
+                         marks.columns.begin() + columns.first + columns.count);
+  return window;
 }
 
 std::shared_ptr<const HorizontalGrid> windowed(std::shared_ptr<const HorizontalGrid> grid,
                                                const CellWindow& window) {
-  if (grid->polygons()) return some_polygons(*grid, window.x0, window.nx);
+  if (grid->polygons()) return some_polygons(*grid, window.x0, window.inside);
   return std::make_shared<WindowedGrid>(std::move(grid), window);
 }
 
 std::string window_fact(const Region& region, const CellWindow& window,
                         const HorizontalGrid& grid) {
   const auto size = [](int nx, int ny) { return std::to_string(nx) + " x " + std::to_string(ny); };
+  if (!window.inside.empty())
+    return "Region " + to_text(region) + ": " +
+           std::to_string(std::ranges::count(window.inside, 1)) + " of " +
+           std::to_string(grid.nx()) + " cells, those beside it with it.";
   return "Region " + to_text(region) + ": " + size(window.nx, window.ny) + " of " +
          size(grid.nx(), grid.ny()) + " cells, one beyond its edges.";
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "forecast/forecast.h"
 
@@ -23,6 +24,9 @@ std::string to_text(const Region& region);
 // Rows and columns of a grid. Columns run on at 0 where the grid goes around.
 struct CellWindow {
   int x0 = 0, y0 = 0, nx = 0, ny = 0;
+  // Of cells in a row, which lie in no order: the columns that count. The others are read with
+  // them, and have no place. Empty where all count.
+  std::vector<char> inside = {};
 };
 
 // The smallest range of rows and columns with all cells that overlap the region on any of the grids

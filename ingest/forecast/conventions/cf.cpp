@@ -248,9 +248,15 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   reader.time = cf->roles.time;
   reader.y = cf->roles.y;
   reader.x = cf->roles.x;
-  cf->grid = cf->roles.cells >= 0
-                 ? unstructured_grid(file, grid_file, first, cf->roles.cells, model.assumptions)
-                 : cf_grid(file, cf->roles, reader, first, model.assumptions);
+  std::string how;
+  if (grid_file && cf->roles.cells < 0)
+    model.facts.push_back("The grid file " + grid_file->path() +
+                          " is not used: the data have rows and columns.");
+  cf->grid = cf->roles.cells >= 0 ? unstructured_grid(file, grid_file, first, cf->roles.cells,
+                                                      model.assumptions, how)
+                                  : cf_grid(file, cf->roles, reader, first, model.assumptions, how);
+  model.facts.push_back("Grid: " + std::to_string(cf->grid->nx()) + " x " +
+                        std::to_string(cf->grid->ny()) + " cells, " + how + ".");
   reader.nx = cf->grid->nx();
   reader.ny = cf->grid->ny();
   if (region) cf->restrict_to(*region, model);

@@ -97,8 +97,11 @@ bool unstructured(const DataFile& file, const FileVariable& variable, int dimens
              return v.dimensions == std::vector<int>{dimension} && v.name != file.name(dimension);
            }) != nullptr;
   };
+  bool says_so = false;
+  for (const char* name : {"grid_type", "CDI_grid_type"})
+    says_so |= variable.text(name) == "unstructured";
   return of_name(file.name(dimension)) == Role::kCells ||
-         variable.text("grid_type") == "unstructured" ||
+         (says_so && dimension == variable.dimensions.back()) ||
          (along(names::kLatitude) && along(names::kLongitude));
 }
 

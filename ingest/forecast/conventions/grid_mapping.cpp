@@ -128,6 +128,17 @@ const FileVariable* axis_of(const DataFile& file, int dimension) {
   return at == file.variables().end() ? nullptr : &*at;
 }
 
+// Axes that say that they are latitude and longitude are no map's, whatever else the file holds.
+bool is_geographic(const DataFile& file, const DimensionRoles& roles) {
+  const FileVariable *y = axis_of(file, roles.y), *x = axis_of(file, roles.x);
+  const auto says = [](const FileVariable* axis, const char* direction, const char* grid) {
+    return axis && axis->text("units").starts_with(direction) &&
+           axis->text("standard_name") != grid;
+  };
+  return (says(y, "degrees_n", "grid_latitude") || says(y, "degree_n", "grid_latitude")) &&
+         (says(x, "degrees_e", "grid_longitude") || says(x, "degree_e", "grid_longitude"));
+}
+
 const FileVariable& need_axis(const DataFile& file, int dimension, const FileVariable& water) {
   const FileVariable* axis = axis_of(file, dimension);
   if (!axis)
@@ -142,13 +153,15 @@ const FileVariable& need_axis(const DataFile& file, int dimension, const FileVar
 
 std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const DimensionRoles& roles,
                                               const FieldReader& reader, const FileVariable& water,
-                                              std::vector<std::string>& assumptions) {
+                                              std::vector<std::string>& assumptions,
+                                              std::string& how) {
   const std::string where =
       file.path() + " [" + file.name(roles.y) + ", " + file.name(roles.x) + "]";
   const bool has_fields = roles.latitude && file.size(roles.x) > 1 && file.size(roles.y) > 1;
   std::optional<Fields> fields;
   if (has_fields) fields = fields_of(file, roles, reader);
   const FileVariable* mapping = map_of(file, water);
+  if (mapping && is_geographic(file, roles)) mapping = nullptr;
   if (mapping && (!has_fields || (axis_of(file, roles.y) && axis_of(file, roles.x)))) {
     std::vector<std::string> said;
     std::shared_ptr<const HorizontalGrid> grid;
@@ -160,6 +173,8 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const Dimens
     }
     if (grid && (!has_fields || cells_apart(*grid, *fields) < kMapsPlace_cells)) {
       assumptions.insert(assumptions.end(), said.begin(), said.end());
+      const std::string name = mapping->text("grid_mapping_name");
+      how = "map " + (name.empty() ? mapping->name : name);
       return grid;
     }
     assumptions.push_back("The map " + mapping->name +
@@ -167,7 +182,9 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const Dimens
                           (grid ? " the file's latitudes and longitudes, which are taken."
                                 : " the file's latitudes and longitudes."));
   }
+  how = "fields " + (has_fields ? roles.latitude->name + ", " + roles.longitude->name : "");
   if (has_fields) return grid_of_fields(file, roles, std::move(*fields));
+  how = "axes " + file.name(roles.y) + ", " + file.name(roles.x);
   const FileVariable& y = need_axis(file, roles.y, water);
   const FileVariable& x = need_axis(file, roles.x, water);
   const auto latitude = degrees(file, y, names::kLatitude);

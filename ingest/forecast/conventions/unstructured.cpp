@@ -180,7 +180,8 @@ void check_polygons(const CellPolygons& polygons, const std::string& where) {
 
 std::unique_ptr<HorizontalGrid> unstructured_grid(const DataFile& file, const DataFile* grid_file,
                                                   const FileVariable& water, int dimension,
-                                                  std::vector<std::string>& assumptions) {
+                                                  std::vector<std::string>& assumptions,
+                                                  std::string& how) {
   const std::size_t cells = file.size(dimension);
   for (const DataFile* from : {grid_file, &file}) {
     if (!from) continue;
@@ -198,6 +199,9 @@ std::unique_ptr<HorizontalGrid> unstructured_grid(const DataFile& file, const Da
       polygons = voronoi_cells(places);
     }
     check_polygons(*polygons, from->path());
+    how = "cells in a row";
+    if (centres) how += ", " + centres.latitude->name + ", " + centres.longitude->name;
+    if (from == grid_file) how += " of " + from->path();
     return std::make_unique<PolygonGrid>(std::move(places), std::move(*polygons));
   }
   const std::string size = std::to_string(cells) + " cells";
@@ -210,15 +214,16 @@ std::unique_ptr<HorizontalGrid> unstructured_grid(const DataFile& file, const Da
                "with cdo remapcon,r720x360"});
 }
 
-std::unique_ptr<HorizontalGrid> some_polygons(const HorizontalGrid& grid, int first, int count) {
+std::unique_ptr<HorizontalGrid> some_polygons(const HorizontalGrid& grid, int first,
+                                              const std::vector<char>& inside) {
   const CellPolygons& all = *grid.polygons();
   std::vector<glm::dvec2> centres;
   CellPolygons some;
   some.first.push_back(0);
-  for (int cell = first; cell < first + count; ++cell) {
-    centres.push_back(grid.lat_lon_deg(cell + 0.5, 0.5));
-    for (std::uint32_t at = all.first[std::size_t(cell)]; at < all.first[std::size_t(cell) + 1];
-         ++at)
+  for (std::size_t n = 0; n < inside.size(); ++n) {
+    const std::size_t cell = std::size_t(first) + n;
+    centres.push_back(grid.lat_lon_deg(double(cell) + 0.5, 0.5));
+    for (std::uint32_t at = all.first[cell]; inside[n] && at < all.first[cell + 1]; ++at)
       some.corner_deg.push_back(all.corner_deg[at]);
     some.first.push_back(std::uint32_t(some.corner_deg.size()));
   }

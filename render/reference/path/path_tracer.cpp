@@ -15,6 +15,12 @@ namespace {
 // with as much noise as before.
 constexpr double kFaintWay_per_sr = 0.12;
 
+// Paths that a scattering sends towards the sun, in the mean.
+constexpr double kBranches = 0.25;
+// Of a direction in the peak around the sun, 1/sr: paths of greater ones are kept although little
+// is left of them, or they would be spikes again.
+constexpr double kStrongWay_per_sr = 0.12;
+
 double square(double x) {
   return x * x;
 }
@@ -60,9 +66,9 @@ struct PathTracer::Path {
   void add(const glm::dvec3& radiance) { result.radiance_W_per_m2_sr_nm += radiance; }
   // What a wavelength's light counts on this path.
   glm::dvec3 weights() const { return throughput * densities / mean(densities); }
-  // Roulette by what is left of the path, never by its length.
-  void thin_out() {
-    const double survive = most(throughput);
+  // Roulette by what is left of the path and how much it matters, never by its length.
+  void thin_out(double importance = 1) {
+    const double survive = most(throughput) * importance;
     if (survive >= 1) return;
     if (random.uniform() >= survive) alive = false;
     throughput /= survive;
@@ -86,6 +92,9 @@ PathTracer::PathTracer(const Forest& forest, const RenderRequest& request, PathS
     co_albedos_.push_back(volume.co_albedo);
     grey_ = grey_ && !air_ && phases_.back().grey() && ice_phases_.back().grey();
   }
+  if (most(around_.sun_W_per_m2_nm()) > 0)
+    for (const PhaseSampler& phase : phases_)
+      if (!peak_ && phase.has_peak()) peak_ = &phase;
 }
 
 const PhaseSampler& PathTracer::phase(const PathMedium::Collision& collision) const {
@@ -108,6 +117,11 @@ PathSample PathTracer::sample(const Ray& ray, Random& random) const {
     path.densities = glm::dvec3{0.0};
     path.densities[path.hero] = 1;
   }
+  follow(path);
+  return path.result;
+}
+
+void PathTracer::follow(Path& path) const {
   while (path.alive) {
     const double ground_m = around_.ground_m(path.ray, path.on_ground);
     const PhaseSampler* phase = next_scattering(path, ground_m);
@@ -125,7 +139,11 @@ PathSample PathTracer::sample(const Ray& ray, Random& random) const {
       break;
     }
   }
-  return path.result;
+}
+
+// Not before scatterings that are smoothed.
+bool PathTracer::branches(const Path& path) const {
+  return peak_ && (exact_orders_ < 0 || path.result.scatterings < exact_orders_);
 }
 
 const PhaseSampler* PathTracer::next_scattering(Path& path, double ground_m) const {
@@ -188,12 +206,39 @@ void PathTracer::light_at_collision(Path& path, const PhaseSampler& phase) const
 }
 
 void PathTracer::scatter(Path& path, const PhaseSampler& phase) const {
-  const Turn turn = phase.sample(path.hero, path.random);
-  path.ray.direction = turned(path.ray.direction, turn, path.random);
-  const glm::dvec3 value = phase.values(turn.one_minus_cos);
+  if (branches(path) && path.random.uniform() < kBranches) {
+    Path branch = path;
+    branch.result.radiance_W_per_m2_sr_nm = glm::dvec3{0.0};
+    const glm::dvec3 direction =
+        turned(around_.sun_centre(), peak_->sample_peak(path.hero, path.random), path.random);
+    turn(branch, phase, direction, one_minus_cos(path.ray.direction, direction));
+    follow(branch);
+    path.add(branch.result.radiance_W_per_m2_sr_nm);
+  }
+  const Turn own = phase.sample(path.hero, path.random);
+  turn(path, phase, turned(path.ray.direction, own, path.random), own.one_minus_cos);
+}
+
+// Of a path, by whichever of the two ways to draw its direction.
+void PathTracer::turn(Path& path, const PhaseSampler& phase, const glm::dvec3& direction,
+                      double one_minus_cos) const {
+  const glm::dvec3 value = phase.values(one_minus_cos);
+  path.ray.direction = direction;
   path.last_density = mean(value);
-  if (!phase.grey()) path.densities *= value / value[path.hero];
-  path.thin_out();
+  if (!branches(path)) {
+    if (!phase.grey()) path.densities *= value / value[path.hero];
+    path.thin_out();
+    return;
+  }
+  const glm::dvec3 peak = peak_->peak_values(nepho::one_minus_cos(direction, around_.sun_centre()));
+#if defined(NEPHO_MUTANT_BRANCH_TWICE)
+  const glm::dvec3 both = value;
+#else
+  const glm::dvec3 both = value + kBranches * peak;
+#endif
+  path.throughput *= value / both;
+  if (!grey_) path.densities *= both / both[path.hero];
+  path.thin_out(std::max(1.0, most(peak) / kStrongWay_per_sr));
 }
 
 // Light on the ground, and the way on. False where the path ends.

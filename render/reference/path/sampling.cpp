@@ -77,6 +77,9 @@ PhaseSampler::Table PhaseSampler::make_table(const std::vector<float>& log_value
     table.log_most.push_back(most);
     table.envelope.push_back(sum);
   }
+  while (phase_texel_angle_rad(int(table.peak_end)) < kPeak_rad) ++table.peak_end;
+  table.peak_part =
+      phase_table_moments(log_values, wavelength, int(table.peak_end)).integral / std::exp(norm);
   return table;
 }
 
@@ -108,15 +111,40 @@ Turn PhaseSampler::sample(int wavelength, Random& random) const {
   if (kind_ == Kind::kRayleigh) return sample_rayleigh(random);
   if (kind_ == Kind::kCornetteShanks) return sample_draine(asymmetry_, 1, random);
   const Table& table = tables_[std::size_t(wavelength)];
+  return sample_table(table, wavelength, table.envelope.back(), random);
+}
+
+Turn PhaseSampler::sample_table(const Table& table, int wavelength, double mass,
+                                Random& random) const {
   while (true) {
-    const double mass = random.uniform() * table.envelope.back();
+    const double below = random.uniform() * mass;
     const auto i =
-        std::size_t(std::ranges::upper_bound(table.envelope, mass) - table.envelope.begin());
+        std::size_t(std::ranges::upper_bound(table.envelope, below) - table.envelope.begin());
     const double low = table.from_forward[i], high = table.from_forward[i + 1];
     const double down = low + random.uniform() * (high - low);
     if (random.uniform() * std::exp(table.log_most[i]) < value(wavelength, down))
       return {down, std::sqrt(std::max(0.0, down * (2 - down)))};
   }
+}
+
+glm::dvec3 PhaseSampler::peak_values(double one_minus_cos) const {
+  if (kind_ == Kind::kHgDraine)
+    return glm::dvec3{f64::hg_phase(one_minus_cos, fit_.peak_asymmetry)};
+  if (kind_ == Kind::kHenyeyGreenstein) return values(one_minus_cos);
+  glm::dvec3 densities{0.0};
+  for (int c = 0; c < 3; ++c) {
+    const Table& table = tables_[std::size_t(c)];
+    if (one_minus_cos < table.from_forward[table.peak_end])
+      densities[c] = value(c, one_minus_cos) / table.peak_part;
+  }
+  return densities;
+}
+
+Turn PhaseSampler::sample_peak(int wavelength, Random& random) const {
+  if (kind_ == Kind::kHgDraine) return sample_hg(fit_.peak_asymmetry, random.uniform());
+  if (kind_ == Kind::kHenyeyGreenstein) return sample(wavelength, random);
+  const Table& table = tables_[std::size_t(wavelength)];
+  return sample_table(table, wavelength, table.envelope[table.peak_end - 1], random);
 }
 
 }  // namespace nepho

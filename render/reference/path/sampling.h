@@ -57,6 +57,17 @@ class PhaseSampler {
   glm::dvec3 values(double one_minus_cos) const;
   Turn sample(int wavelength, Random& random) const;
 
+  // The forward peak alone, to draw directions near a light. A table's is its curve within
+  // kPeak_rad, over what it holds; of HG + Draine it is the first of the two; Henyey-Greenstein's,
+  // from an asymmetry of kLeastPeak on, is all of it.
+  static constexpr double kPeak_rad = 0.17, kLeastPeak = 0.5;
+  bool has_peak() const {
+    return kind_ == Kind::kTable || kind_ == Kind::kHgDraine ||
+           (kind_ == Kind::kHenyeyGreenstein && asymmetry_ > kLeastPeak);
+  }
+  glm::dvec3 peak_values(double one_minus_cos) const;  // densities, 1/sr
+  Turn sample_peak(int wavelength, Random& random) const;
+
  private:
   enum class Kind : std::uint8_t {
     kTable,
@@ -71,7 +82,10 @@ class PhaseSampler {
     std::vector<double> log_values;          // by texel; divided by their integral
     std::vector<double> envelope, log_most;  // by interval: sums of mass, and the larger end
     std::vector<double> from_forward;        // 1 - cos of each texel
+    std::size_t peak_end = 0;                // texel
+    double peak_part = 0;                    // of the light, before that
   };
+  Turn sample_table(const Table& table, int wavelength, double mass, Random& random) const;
   static Table make_table(const std::vector<float>& log_values, int wavelength);
 
   Kind kind_;

@@ -306,6 +306,31 @@ TEST(CellsInARow, PlacesMayBeInAnotherFile) {
   EXPECT_LT(apart_deg(grid->lat_lon_deg(100.5, 0.5), made_grid("icon").cell(100).centre_deg), 1e-9);
 }
 
+// A region leaves the cells that lie in it, and those beside them; the others are clear.
+TEST(CellsInARow, RegionLeavesItsOwn) {
+  const fs::path path = made_folder() / "some.nc";
+  write_made(path, "icon", "height", "up", nc_writer());
+  const MadeGrid grid = made_grid("icon");
+  const glm::dvec2 c = grid.cell(grid.cloudy[0]).centre_deg;
+  const auto cloudy_in = [&](double offset_deg) {
+    forecast::OpenRequest request;
+    request.files = {path.string()};
+    request.region =
+        forecast::Region{c.x + offset_deg - 0.05, c.y - 0.05, c.x + offset_deg + 0.05, c.y + 0.05};
+    const auto forecast = netcdf::open_netcdf(request);
+    const forecast::CellPolygons& cells = *forecast->grid(0)->polygons();
+    std::size_t places = 0;
+    for (std::size_t n = 0; n + 1 < cells.first.size(); ++n)
+      places += cells.first[n + 1] > cells.first[n];
+    EXPECT_GT(places, 3u);
+    EXPECT_LT(places, 60u);
+    const auto columns = forecast->columns(0);
+    return std::ranges::count_if(columns.extinction_per_m, [](float v) { return v > 0; });
+  };
+  EXPECT_EQ(cloudy_in(0), 4);
+  EXPECT_EQ(cloudy_in(-1), 0);
+}
+
 // Beside a satellite's disc there is nothing, whatever the file holds there.
 TEST(Views, CellsOffTheDiscAreClear) {
   const fs::path path = made_folder() / "disc.nc";
