@@ -3,8 +3,10 @@
 // tells by how much the halves may be off; what a linear source leaves goes with the cube of optical
 // depth, and is extrapolated away. A step whose doubt is above the budget is tried again, shorter.
 
-// Of the tolerance, what a step may be in doubt of: this part of its own light, and of all before it.
-const float DOUBT_OF_STEP = 1.0, DOUBT_OF_RAY = 0.15;
+// Of the tolerance, what a step may be in doubt of: this part of its own light, and of all before it;
+// where steps are many, a smaller part of that.
+const float DOUBT_OF_STEP = 1.0;
+float doubt_of_ray() { return clamp(0.1 * pow(1e4 * frame.tolerance, 1.0 / 6.0), 0.1, 0.2); }
 // A doubt is that of the longer steps: what is left is this part of it.
 const float LEFT_OF_DEPTH = 0.5, LEFT_OF_SOURCE = 0.3;
 // Light that counts as if it were there already: a ray of less optical depth is hardly seen.
@@ -69,7 +71,7 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
 #endif
     float doubt = here * (LEFT_OF_SOURCE * luminance_of(abs(halves - whole)) + LEFT_OF_DEPTH * min(lost, 1.0) * max(bright, behind));
     float budget = frame.tolerance * (DOUBT_OF_STEP * here * luminance_of(halves) +
-                   DOUBT_OF_RAY * (luminance_of(seen.radiance) + here * max(FAINT * bright, through * behind)));
+                   doubt_of_ray() * (luminance_of(seen.radiance) + here * max(FAINT * bright, through * behind)));
     // Its error goes with the cube of its length.
     float by = 0.9 * pow(budget / max(doubt, 1e-30), 1.0 / 3.0);
     // Thicker, and the source at three places says too little of it; less of it is seen behind cloud.
