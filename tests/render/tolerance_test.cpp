@@ -75,7 +75,7 @@ class Judge {
     // Rays of a fixed step end by the tolerance too; above 1e-3 all at the same transmittance.
     const double ends_by = std::min(tolerance, 1e-3);
     Measured finest;
-    for (step_voxels = 8; step_voxels > 0.02; step_voxels /= std::sqrt(2.0)) {
+    for (step_voxels = 8; step_voxels > 0.06; step_voxels /= std::sqrt(2.0)) {
       const auto [known, fresh] = fixed_.try_emplace({ends_by, step_voxels});
       if (fresh) known->second = measure(ends_by, step_voxels);
       finest = known->second;
