@@ -105,6 +105,7 @@ Seen see() {
   int ended = t < end_m ? 0 : 1;
   while (ended == 0) {
     enter_walks(t);
+    march.fresh = true;  // a volume that begins or ends here need not begin with nothing
     int inside = 1;
     while (inside == 1) {
       bool empty, smooth_, enters;
