@@ -71,7 +71,8 @@ TEST_F(BenchScene, the_reference_march_is_converged_in_thick_voxels) {
   const auto picture = [&](const MarchSettings& settings) {
     return march_picture(RayMarch(levels, request, settings), request);
   };
-  const HdrImage truth = picture({1e-6, 1e-8, 5});
+  const HdrImage truth =
+      picture({.source_tolerance = 1e-6, .least_transmittance = 1e-8, .least_halvings = 5});
   const double error = picture_error(picture(kReferenceMarch), truth),
                usual = picture_error(picture({}), truth);
   test::report_accuracy("reference march", "bench, thick voxels: cells in four", error, 1.5e-3,

@@ -9,8 +9,8 @@
 #include "cli/target_search.h"
 #include "error_scenes.h"
 #include "gl_fixture.h"
-#include "march_picture.h"
 #include "reference/error_metric.h"
+#include "reference/march_picture.h"
 
 namespace nepho::test {
 namespace {
