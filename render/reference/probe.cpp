@@ -191,8 +191,6 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
 
   // In batches, each over all of the picture.
   const std::size_t batches = std::max<std::size_t>(pixels.size() / kBatch, 1);
-  // The smallest of the terms: over a planet, where rays are long, every second batch.
-  const auto tells_noise = [&](std::size_t p) { return !planet || p % batches % 2 == 0; };
   std::vector<Probe> probes(pixels.size());
   const auto each_of_batch = [&](std::size_t batch, const auto& work) {
     tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
@@ -209,7 +207,7 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
       probe.picture = pixel_luminance(picture, pixels[p].pixel);
       probe.weight = pixels[p].weight;
       probe.cut = luminance(exact.radiance_W_per_m2_sr_nm);
-      if (tells_noise(p)) probe.noisy = luminance(noisy_march.trace(ray).radiance_W_per_m2_sr_nm);
+      probe.noisy = luminance(noisy_march.trace(ray).radiance_W_per_m2_sr_nm);
       probe.finest = probe.cut;
       const glm::dvec3 apart = glm::normalize(request.sun.to_sun) - ray.direction;
       probe.light_model =
@@ -241,7 +239,7 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
     integration.push_back({probe.picture, probe.cut, probe.weight});
     if (!finest_march || probe.marched_finest)
       level_of_detail.push_back({probe.cut, probe.finest, probe.weight});
-    if (tells_noise(p)) quantisation.push_back({probe.noisy, probe.cut, probe.weight});
+    quantisation.push_back({probe.noisy, probe.cut, probe.weight});
     light_model.push_back({probe.cut + probe.light_model, probe.cut, probe.weight});
     light_pixels.push_back({ray_of(p), pixels[p].pixel, probe.cut, probe.weight});
   }

@@ -19,7 +19,7 @@ class TargetPictures : public GlFixture, public ::testing::WithParamInterface<st
 class ThinTargetPictures : public TargetPictures {};
 
 // Of one picture, over all that the data hold: integration, level of detail and quantisation.
-// Returns for how many of the targets the probes said that they are met.
+// Returns for how many of the targets the probes said that they are met, with the margin.
 int obtain(const ErrorSceneKind& kind) {
   const ErrorScene scene = kind.make();
   const Counts counts = scene.request.planet ? Counts::kAll : Counts::kWithCloud;
@@ -40,13 +40,12 @@ int obtain(const ErrorSceneKind& kind) {
         "obtained %.2e\n",
         kind.name.c_str(), 100 * target, choice.best().setting.tolerance,
         choice.best().setting.budget_mib, choice.tried.size(), expected, error);
-    if (expected <= target) {
+    if (choice.met) {
       ++stated;
       report_accuracy("Targets of error: obtained over asked for",
                       kind.name + ", " + report_number(target), error / target, 1, "1");
       EXPECT_LE(error, target) << kind.name;
-    } else {
-      EXPECT_FALSE(choice.met);
+    } else if (expected > target) {
       EXPECT_GT(error, target / 3) << kind.name << ": said to be out of reach, and is not";
     }
   }

@@ -81,6 +81,8 @@ TargetPicture draw_for_error(OpenedScene& opened, double target) {
       settings_text(used) + " give " + percent_text(reached) +
       (met ? " (the cheapest that do; " : " (the least here; " + what_is_left(error) + "; ") +
       search_text(choice, search_s) + ")";
+  if (met && reached > kErrorMargin * target)
+    picture.line += "; all pixels may hold more than the few that were measured";
   if (error.light_model > target)
     picture.line += "; the light model's " + percent_text(error.light_model) +
                     " is beside it, and no setting of the march changes that: --engine reference "
