@@ -192,11 +192,11 @@ std::vector<std::uint32_t> LightSamples::pairs(std::size_t first, std::size_t co
   for (std::size_t tile = first; tile < first + count; ++tile) {
     if (needed_[tile].all()) continue;
     std::array<int, kSamples> from = nearest(needed_[tile]);
+#if defined(NEPHO_MUTANT_ANY_LIGHT)
+    std::ranges::reverse(from);
+#endif
     for (std::size_t s = 0; s < kSamples; ++s) {
       if (needed_[tile][s]) continue;
-#if defined(NEPHO_MUTANT_ANY_LIGHT)
-      from[s] = from[0];
-#endif
       list.push_back(std::uint32_t(kSamples * tile + s));
       list.push_back(std::uint32_t(kSamples * tile) + std::uint32_t(from[s]));
     }
