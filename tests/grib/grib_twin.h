@@ -4,13 +4,13 @@
 #include <optional>
 
 #include "grib_writer.h"
+#include "twin_weather.h"
 
 namespace nepho::grib::test {
 
 // A small forecast on latitudes and longitudes whose every value is a formula of its place, written
-// in any of the ways that centres have: what is read must not depend on them. The formulas are
-// those of the NetCDF twin (tests/netcdf/cf_twin.h).
-struct GribTwin {
+// in any of the ways that centres have: what is read must not depend on them.
+struct GribTwin : nepho::test::TwinWeather {
   int edition = 2;
   std::vector<double> latitude = {-30, -10, 10, 30, 50};
   std::vector<double> longitude = {100, 120, 140, 160, 180, 200};
@@ -22,14 +22,6 @@ struct GribTwin {
   long bits = 24;
   std::optional<double> missing_hPa;  // a level without water
   double missing_at = NAN;            // a latitude without values
-
-  static double water(double lat, double lon, double hPa, double hour) {
-    const double turn = std::fmod(lon + 720, 360);
-    if (std::fmod(turn / 20, 2) >= 1) return 0;
-    return 2e-4 * (1 + lat / 100) * (1 + turn / 1000) * (hPa / 1000) * (1 + hour / 100);
-  }
-  static double temperature_K(double hPa) { return 288 - 60 * (1 - hPa / 1000); }
-  static double geopotential_height_m(double hPa) { return 7500 * std::log(1013.25 / hPa); }
 
   // Points of the file's order, by the flags' own meaning (WMO flag table 3.4).
   template <class Value>

@@ -2,7 +2,6 @@
 
 #include <eccodes.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,25 +15,12 @@
 #include "core/error.h"
 #include "sources/grib/grib_file.h"
 #include "sources/grib/open_grib.h"
+#include "test_folder.h"
 
 namespace nepho::grib::test {
 
-// A folder of this process, gone at its end.
-class TestFolder {
- public:
-  TestFolder()
-      : path_(std::filesystem::temp_directory_path() / ("nepho_grib_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline const TestFolder& folder() {
-  static const TestFolder folder;
+inline const nepho::test::TestFolder& folder() {
+  static const nepho::test::TestFolder folder("grib");
   return folder;
 }
 

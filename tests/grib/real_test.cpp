@@ -7,6 +7,7 @@
 
 #include "accuracy_report.h"
 #include "grib_twin.h"
+#include "optical_depths.h"
 #include "sources/netcdf/nc_file.h"
 #include "sources/netcdf/open_netcdf.h"
 
@@ -56,16 +57,6 @@ TEST(GribReal, ValuesAreTheDerivedFiles) {
   }
 }
 
-std::vector<double> optical_depths(const forecast::ForecastColumns& c) {
-  std::vector<double> depths(std::size_t(c.nx) * std::size_t(c.ny), 0.0);
-  const std::size_t nz = std::size_t(c.nz);
-  for (std::size_t n = 0; n < depths.size(); ++n)
-    for (std::size_t k = 0; k < nz; ++k)
-      depths[n] += double(c.extinction_per_m[n * nz + k]) *
-                   double(c.interface_m[n * (nz + 1) + k + 1] - c.interface_m[n * (nz + 1) + k]);
-  return depths;
-}
-
 // The four variables alone, as the NetCDF has them: without the land, whose droplets are smaller.
 std::string selection() {
   std::ifstream in(kGrib, std::ios::binary);
@@ -86,8 +77,8 @@ TEST(GribReal, OpticalDepthIsTheDerivedFiles) {
   const auto nc = netcdf::open_netcdf(request);
   const auto grib = open({selection()});
   EXPECT_EQ(grib->time_origin_ns(), nc->time_origin_ns());
-  const std::vector<double> ours = optical_depths(grib->columns(0)),
-                            theirs = optical_depths(nc->columns(0));
+  const std::vector<double> ours = nepho::test::optical_depths(grib->columns(0)),
+                            theirs = nepho::test::optical_depths(nc->columns(0));
   ASSERT_EQ(ours.size(), theirs.size());
   const std::size_t nx = 144, ny = 73;
   double sum = 0, other_sum = 0, apart = 0;

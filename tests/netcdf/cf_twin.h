@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "nc_writer.h"
+#include "twin_weather.h"
 
 namespace nepho::forecast::test {
 
 // A small CF forecast whose every value is a formula of its place, written in any of the ways that
 // models have: what is read must not depend on them.
-struct CfTwin {
+struct CfTwin : nepho::test::TwinWeather {
   std::vector<double> latitude = {-30, -10, 10, 30, 50};
   std::vector<double> longitude = {100, 120, 140, 160, 180, 200};
   std::vector<double> pressure_hPa = {1000, 900, 700, 500};
@@ -22,15 +23,6 @@ struct CfTwin {
   int type = NC_FLOAT, format = NC_NETCDF4;
   bool packed = false, with_time = true;
   double fill = NAN;  // water where the column is at index 0 of both axes
-
-  // kg/kg; zero in half of the columns.
-  static double water(double lat, double lon, double hPa, double hour) {
-    const double turn = std::fmod(lon + 720, 360);
-    if (std::fmod(turn / 20, 2) >= 1) return 0;
-    return 2e-4 * (1 + lat / 100) * (1 + turn / 1000) * (hPa / 1000) * (1 + hour / 100);
-  }
-  static double temperature_K(double hPa) { return 288 - 60 * (1 - hPa / 1000); }
-  static double geopotential_height_m(double hPa) { return 7500 * std::log(1013.25 / hPa); }
 
   template <class Value>
   std::vector<double> field(Value value) const {

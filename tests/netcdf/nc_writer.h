@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <netcdf.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <map>
@@ -12,25 +11,12 @@
 
 #include "core/error.h"
 #include "sources/netcdf/open_netcdf.h"
+#include "test_folder.h"
 
 namespace nepho::forecast::test {
 
-// A folder of this process, gone at its end.
-class TestFolder {
- public:
-  TestFolder()
-      : path_(std::filesystem::temp_directory_path() / ("nepho_nc_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline const TestFolder& folder() {
-  static const TestFolder folder;
+inline const nepho::test::TestFolder& folder() {
+  static const nepho::test::TestFolder folder("nc");
   return folder;
 }
 

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "geo/place.h"
 #include "nc_writer.h"
+#include "optical_depths.h"
 #include "sources/netcdf/nc_file.h"
 #include "sources/netcdf/open_netcdf.h"
 
@@ -62,16 +63,6 @@ void expect_sound(const Forecast& f) {
   }
 }
 
-std::vector<double> optical_depths(const ForecastColumns& c) {
-  std::vector<double> depths(std::size_t(c.nx) * std::size_t(c.ny), 0.0);
-  const std::size_t nz = std::size_t(c.nz);
-  for (std::size_t n = 0; n < depths.size(); ++n)
-    for (std::size_t k = 0; k < nz; ++k)
-      depths[n] += double(c.extinction_per_m[n * nz + k]) *
-                   double(c.interface_m[n * (nz + 1) + k + 1] - c.interface_m[n * (nz + 1) + k]);
-  return depths;
-}
-
 TEST(RealFiles, Katrina) {
   const auto f = open("nc/wrf_katrina_10km_nest_4t.nc");
   print(*f);
@@ -105,7 +96,7 @@ TEST(RealFiles, GfsPackedCf) {
 // taken as that of the cloudy part of each layer.
 TEST(RealFiles, UnifiedModel) {
   expect_sound(*open("nc/um_38lev_cosp_input_2d.nc"));
-  const test::TestFolder folder;
+  const nepho::test::TestFolder folder("real");
   const std::string path = folder / "stratiform.nc";
   std::filesystem::copy_file(std::string(NEPHO_TEST_REAL_DATA) + "/nc/um_38lev_cosp_input_2d.nc",
                              path);
@@ -119,7 +110,7 @@ TEST(RealFiles, UnifiedModel) {
   nc_close(id);
   const auto f = test::open(path);
   print(*f);
-  const std::vector<double> ours = optical_depths(f->columns(0));
+  const std::vector<double> ours = nepho::test::optical_depths(f->columns(0));
   const netcdf::NcFile file(std::string(NEPHO_TEST_REAL_DATA) + "/nc/um_38lev_cosp_input_2d.nc",
                             {});
   const std::vector<double> depth = file.read_all(*file.find("dtau_s"));
@@ -172,7 +163,7 @@ TEST(RealFiles, IconLes) {
 
 // ICON's triangles, two levels of pressure; its temperature under the name of cloud water.
 TEST(RealFiles, IconTriangles) {
-  const test::TestFolder folder;
+  const nepho::test::TestFolder folder("real");
   const std::string path = folder / "icon.nc";
   std::filesystem::copy_file(std::string(NEPHO_TEST_REAL_DATA) + "/edge/psyplot_icon_test.nc",
                              path);

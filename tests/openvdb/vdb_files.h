@@ -12,27 +12,15 @@
 #include "bricks/quantise.h"
 #include "core/error.h"
 #include "host/source_host.h"
+#include "test_folder.h"
 #include "twins.h"
 
 namespace nepho::test {
 
 namespace fs = std::filesystem;
 
-// A folder of this process, gone at its end.
-class TestFolder {
- public:
-  TestFolder() : path_(fs::temp_directory_path() / ("nepho_vdb_" + std::to_string(getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~TestFolder() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 inline const fs::path& folder() {
-  static const TestFolder folder;
+  static const TestFolder folder("vdb");
   return folder.path();
 }
 

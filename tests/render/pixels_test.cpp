@@ -115,17 +115,25 @@ TEST_F(Pixels, ChangeLessThanPredictedFromAfar) {
   expect_predicted("planet from 4000 km", request);
 }
 
+// A field of 64 x 64 x 8 cells of 500 m, 1 km above the ground at the pole: 1/m by index of sample.
+template <class Extinction>
+FieldSource specks_of(Extinction extinction_per_m) {
+  const double side_m = 32e3, cell_m = side_m / 64, low_m = kRadius_m + 1000;
+  const glm::dvec3 corner(-side_m / 2, -side_m / 2, low_m);
+  return FieldSource(std::make_shared<BoxChart>(
+                         corner, glm::dmat3(side_m, 0., 0., 0., side_m, 0., 0., 0., side_m / 8)),
+                     Lattice({kSplitXy, kSplitXy, kSplitXy, kSplitXyz, kSplitXyz, kSplitXyz}),
+                     [=](glm::dvec3 p) -> double {
+                       return extinction_per_m(glm::ivec3(glm::round((p - corner) / cell_m)));
+                     });
+}
+
 // Clouds of one sample, some pixels apart: from each of 300 marched pictures' brightest spots to
 // the faintest, none is missing.
 TEST_F(Pixels, CloudsOfOneSampleAreAllThere) {
-  const double side_m = 32e3, cell_m = side_m / 64, low_m = kRadius_m + 1000;
-  const FieldSource specks(
-      std::make_shared<BoxChart>(glm::dvec3(-side_m / 2, -side_m / 2, low_m),
-                                 glm::dmat3(side_m, 0., 0., 0., side_m, 0., 0., 0., side_m / 8)),
-      Lattice({kSplitXy, kSplitXy, kSplitXy, kSplitXyz, kSplitXyz, kSplitXyz}), [=](glm::dvec3 p) {
-        const glm::ivec3 at(glm::round((p - glm::dvec3(-side_m / 2, -side_m / 2, low_m)) / cell_m));
-        return at.x % 7 == 3 && at.y % 9 == 2 && at.z % 3 == 1 && (at.x * at.y) % 5 != 1 ? 1e-3 : 0;
-      });
+  const FieldSource specks = specks_of([](glm::ivec3 at) {
+    return at.x % 7 == 3 && at.y % 9 == 2 && at.z % 3 == 1 && (at.x * at.y) % 5 != 1 ? 1e-3 : 0;
+  });
   RenderRequest request = large(planet_request({&specks}));
   look(request, 4e4, -85, 80);
   const RenderResult some = pixels_of(request, WhichPixels::kAdaptive);
@@ -151,14 +159,8 @@ TEST_F(Pixels, CloudsOfOneSampleAreAllThere) {
 // Clouds of one sample, behind the eye: their shadows on the sea, each some pixels wide, are all
 // there.
 TEST_F(Pixels, ShadowsOnGroundAreAllThere) {
-  const double side_m = 32e3, cell_m = side_m / 64, low_m = kRadius_m + 1000;
-  const FieldSource specks(
-      std::make_shared<BoxChart>(glm::dvec3(-side_m / 2, -side_m / 2, low_m),
-                                 glm::dmat3(side_m, 0., 0., 0., side_m, 0., 0., 0., side_m / 8)),
-      Lattice({kSplitXy, kSplitXy, kSplitXy, kSplitXyz, kSplitXyz, kSplitXyz}), [=](glm::dvec3 p) {
-        const glm::ivec3 at(glm::round((p - glm::dvec3(-side_m / 2, -side_m / 2, low_m)) / cell_m));
-        return at.x % 7 == 3 && at.y % 9 == 2 && at.z == 2 ? 5e-3 : 0;
-      });
+  const FieldSource specks = specks_of(
+      [](glm::ivec3 at) { return at.x % 7 == 3 && at.y % 9 == 2 && at.z == 2 ? 5e-3 : 0; });
   RenderRequest request = large(planet_request({&specks}));
   look(request, 900, -30, 90);
   const RenderResult some = pixels_of(request, WhichPixels::kAdaptive);
