@@ -64,12 +64,13 @@ Role of_name(const std::string& dimension) {
   if (any_of(name, {"time", "t", "times", "step", "valid_time", "forecast_time", "time_counter"}))
     return Role::kTime;
   if (any_of(name, {"lat", "latitude", "y", "yc", "rlat", "nj", "south_north", "nlat", "ygrid_0",
-                    "grid_yt", "nlats"}))
+                    "grid_yt", "nlats", "yt", "yh"}))
     return Role::kY;
   if (any_of(name, {"lon", "longitude", "x", "xc", "rlon", "ni", "west_east", "nlon", "xgrid_0",
-                    "grid_xt", "nlons"}))
+                    "grid_xt", "nlons", "xt", "xh"}))
     return Role::kX;
-  if (any_of(name, {"z", "k", "nz", "zt", "zc", "pfull", "full_level", "nlev", "bottom_top"}) ||
+  if (any_of(name, {"z", "k", "nz", "zt", "zc", "pfull", "full_level", "nlev", "bottom_top", "nk",
+                    "zh", "zu_3d"}) ||
       starts(name, {"lev", "plev", "isobaric", "height", "altitude", "alt", "pressure", "hybrid",
                     "model_level", "lv_", "mlev", "ilev"}))
     return Role::kLevel;
@@ -77,7 +78,7 @@ Role of_name(const std::string& dimension) {
 }
 
 // Latitudes over two of the variable's dimensions.
-const FileVariable* plane_of(const DataFile& file, const VariableNames& names,
+const FileVariable* plane_of(const DataFile& file, Quantity names,
                              const FileVariable& variable) {
   return find_named(file, names, [&](const FileVariable& v) {
     int planes = 0;
@@ -92,7 +93,7 @@ const FileVariable* plane_of(const DataFile& file, const VariableNames& names,
 
 // One-dimensional coordinates of cells that are no product of two axes.
 bool unstructured(const DataFile& file, const FileVariable& variable, int dimension) {
-  const auto along = [&](const VariableNames& names) {
+  const auto along = [&](Quantity names) {
     return find_named(file, names, [&](const FileVariable& v) {
              return v.dimensions == std::vector<int>{dimension} && v.name != file.name(dimension);
            }) != nullptr;

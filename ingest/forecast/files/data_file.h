@@ -80,6 +80,10 @@ class DataFile {
 
   std::vector<double> read_all(const FileVariable& variable) const;
 
+  // Before the file is shared: what is said of a variable from elsewhere, in place of what it says.
+  void set_attribute(int variable, const std::string& name, const std::string& text);
+  void add_fact(std::string fact) { facts_.push_back(std::move(fact)); }
+
  protected:
   explicit DataFile(std::string path) : path_(std::move(path)) {}
 
