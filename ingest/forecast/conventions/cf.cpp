@@ -91,8 +91,10 @@ void CfFile::find_water_in(Model& model) const {
   model.water.push_back(assumed);
   model.assumptions.push_back(
       "There is no cloud water, only the cloud fraction " + model.cloud_fraction->name +
-      ": a cell's cloudy part is assumed to hold 0.21 g/m3 exp(-z / h) of water at the height z over "
-      "the ground, h = 700 m ln(1 + column vapour in kg/m2), ice from -10 degC to -30 degC (Kiehl et "
+      ": a cell's cloudy part is assumed to hold 0.21 g/m3 exp(-z / h) of water at the height z "
+      "over "
+      "the ground, h = 700 m ln(1 + column vapour in kg/m2), ice from -10 degC to -30 degC (Kiehl "
+      "et "
       "al. 1998)" +
       (air->has_vapour() ? "." : "; there is no vapour, 25 kg/m2 are taken."));
 }

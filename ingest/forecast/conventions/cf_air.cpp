@@ -116,14 +116,15 @@ void CfAir::choose_pressure(Vertical& vertical, const std::vector<WaterVariable>
   const DataFile& file = *reader_->file;
   for (const WaterVariable& w : water)
     if (w.species == Species::kCloudWater && w.basis != Basis::kVolume) liquid_.push_back(w);
-  const bool per_volume = std::ranges::all_of(
-      water, [](const WaterVariable& w) { return w.basis == Basis::kVolume; });
+  const bool per_volume =
+      std::ranges::all_of(water, [](const WaterVariable& w) { return w.basis == Basis::kVolume; });
   if (vertical.level_pressure_Pa.empty() && !vertical.pressure)
     vertical.pressure = find_named(file, names::kPressure, [&](const FileVariable& v) {
       if (!reader_->is_field(v, z_) || !unit_of(v, kPressure).fits) return false;
       if (!is_deviation(*reader_, v, z_)) return true;
-      facts.push_back(v.name + " falls to 0 and below: it is no pressure but a deviation from one, "
-                               "and is not used.");
+      facts.push_back(v.name +
+                      " falls to 0 and below: it is no pressure but a deviation from one, "
+                      "and is not used.");
       return false;
     });
   const bool has_field =
@@ -141,10 +142,9 @@ void CfAir::choose_pressure(Vertical& vertical, const std::vector<WaterVariable>
     facts.push_back("Pressures are those of the base state, " + level_pressure_->name +
                     ": one per level.");
   if (temperature_ && kind_ != Kind::kTemperature)
-    facts.push_back("Temperatures are worked out from the potential temperature " +
-                    temperature_->name +
-                    (kind_ == Kind::kLiquidPotential ? ", that of liquid water, and the liquid."
-                                                     : "."));
+    facts.push_back(
+        "Temperatures are worked out from the potential temperature " + temperature_->name +
+        (kind_ == Kind::kLiquidPotential ? ", that of liquid water, and the liquid." : "."));
   if (!has_field && !level_pressure_) {
     make_standard(vertical);
     if (!per_volume && !density_)
@@ -163,8 +163,8 @@ void CfAir::choose_pressure(Vertical& vertical, const std::vector<WaterVariable>
 void CfAir::add_latent_heat(std::size_t time, bool from_top, Air& air) const {
   const std::size_t cells = std::size_t(reader_->nx) * std::size_t(reader_->ny);
   for (std::size_t at = 0; at < air.temperature_K.size(); ++at) {
-    const double p = air.pressure_Pa.empty() ? air.level_pressure_Pa[at / cells]
-                                             : double(air.pressure_Pa[at]);
+    const double p =
+        air.pressure_Pa.empty() ? air.level_pressure_Pa[at / cells] : double(air.pressure_Pa[at]);
     air.temperature_K[at] = float(temperature_of_theta_K(double(air.temperature_K[at]), p));
   }
   air.is_theta = false;

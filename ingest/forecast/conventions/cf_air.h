@@ -11,9 +11,9 @@
 
 namespace nepho::forecast {
 
-// The air of a CF-like file: temperature (or potential temperature, or that of liquid water), vapour,
-// pressure and density, as fields or, for models with a base state, as one number per level. The
-// standard atmosphere stands in for what is not there, and that is said.
+// The air of a CF-like file: temperature (or potential temperature, or that of liquid water),
+// vapour, pressure and density, as fields or, for models with a base state, as one number per
+// level. The standard atmosphere stands in for what is not there, and that is said.
 class CfAir {
  public:
   // `z` is the water's level dimension. The file's variables are looked for here.
@@ -22,8 +22,8 @@ class CfAir {
   // What temperature is worked out from; null: the standard atmosphere's.
   const FileVariable* temperature() const { return temperature_; }
   bool has_vapour() const { return vapour_; }
-  // Pressure and density, once the levels' heights are known. `water` is what they are for: liquid of
-  // it, and whether any of it counts per kg. `vertical` must outlive this.
+  // Pressure and density, once the levels' heights are known. `water` is what they are for: liquid
+  // of it, and whether any of it counts per kg. `vertical` must outlive this.
   void choose_pressure(Vertical& vertical, const std::vector<WaterVariable>& water,
                        std::vector<std::string>& assumptions, std::vector<std::string>& facts);
   Air at(std::size_t time, const Vertical& vertical) const;
@@ -48,7 +48,7 @@ class CfAir {
                      *level_pressure_ = nullptr;
   Kind kind_ = Kind::kTemperature;
   Vapour vapour_is_ = Vapour::kNone;
-  std::vector<WaterVariable> liquid_;  // of mass ratios
+  std::vector<WaterVariable> liquid_;              // of mass ratios
   std::optional<std::vector<float>> standard_Pa_;  // of heights, where no pressure is known
 };
 

@@ -78,8 +78,7 @@ Role of_name(const std::string& dimension) {
 }
 
 // Latitudes over two of the variable's dimensions.
-const FileVariable* plane_of(const DataFile& file, Quantity names,
-                             const FileVariable& variable) {
+const FileVariable* plane_of(const DataFile& file, Quantity names, const FileVariable& variable) {
   return find_named(file, names, [&](const FileVariable& v) {
     int planes = 0;
     for (const int d : v.dimensions) {

@@ -15,16 +15,16 @@ enum class Vapour { kNone, kSpecific, kMixingRatio, kRelative };
 
 // The air of one time, [k][j][i] from the ground up.
 struct Air {
-  std::vector<float> pressure_Pa;         // or, the same for all columns,
-  std::vector<double> level_pressure_Pa;  // [k]
-  std::vector<float> temperature_K;       // or, the same for all columns,
+  std::vector<float> pressure_Pa;           // or, the same for all columns,
+  std::vector<double> level_pressure_Pa;    // [k]
+  std::vector<float> temperature_K;         // or, the same for all columns,
   std::vector<double> level_temperature_K;  // [k]; both empty: the standard atmosphere's
   bool is_theta = false;                    // potential temperature
-  // Of the base state of models that have one: a field or, the same for all columns, [k]. Both empty:
-  // by pressure and temperature.
+  // Of the base state of models that have one: a field or, the same for all columns, [k]. Both
+  // empty: by pressure and temperature.
   std::vector<float> density_kg_per_m3;
   std::vector<double> level_density_kg_per_m3;
-  std::vector<float> vapour;              // as `vapour_is` says
+  std::vector<float> vapour;  // as `vapour_is` says
   Vapour vapour_is = Vapour::kNone;
 
   struct State {

@@ -204,9 +204,8 @@ Loaded ModelForecast::load(std::size_t time) const {
     const bool is_cloud =
         water.species == Species::kCloudWater || water.species == Species::kCloudIce;
     const std::vector<float> values =
-        water.from_fraction
-            ? water_of_fraction(cloud.fraction, air, columns.interface_m, cells)
-            : model_.field(*water.variable, index);
+        water.from_fraction ? water_of_fraction(cloud.fraction, air, columns.interface_m, cells)
+                            : model_.field(*water.variable, index);
     add_water(water, values, air, cloud, columns, is_cloud ? cloud_path : rain_path,
               result.statistics);
   }
@@ -368,7 +367,8 @@ Air::State Air::at(std::size_t k, std::size_t n, std::size_t cells) const {
   if (temperature_K.empty() && level_temperature_K.empty()) {
     state.temperature_K = standard_temperature_K(standard_geopotential_height_m(state.pressure_Pa));
   } else {
-    state.temperature_K = temperature_K.empty() ? level_temperature_K[k] : double(temperature_K[at]);
+    state.temperature_K =
+        temperature_K.empty() ? level_temperature_K[k] : double(temperature_K[at]);
     if (is_theta)
       state.temperature_K = temperature_of_theta_K(state.temperature_K, state.pressure_Pa);
   }
@@ -379,10 +379,10 @@ Air::State Air::at(std::size_t k, std::size_t n, std::size_t cells) const {
     q = specific_humidity(q, state.temperature_K, state.pressure_Pa);
   state.specific_humidity = q;
   state.density_kg_per_m3 =
-      !density_kg_per_m3.empty()         ? double(density_kg_per_m3[at])
-      : !level_density_kg_per_m3.empty() ? level_density_kg_per_m3[k]
-                                         : moist_density_kg_per_m3(state.pressure_Pa,
-                                                                   state.temperature_K, q);
+      !density_kg_per_m3.empty() ? double(density_kg_per_m3[at])
+      : !level_density_kg_per_m3.empty()
+          ? level_density_kg_per_m3[k]
+          : moist_density_kg_per_m3(state.pressure_Pa, state.temperature_K, q);
   state.dry_density_kg_per_m3 = state.density_kg_per_m3 * (1 - q);
   return state;
 }

@@ -136,7 +136,8 @@ constexpr NameRow kTable[] = {
     {kCloudFraction, kAny, "ccov", ""},
     {kCloudFraction, kAny, "clct", ""},
     // Sizes
-    {kDropletNumber, kAny, "", "number_concentration_of_cloud_liquid_water_particles_in_air", kMade},
+    {kDropletNumber, kAny, "", "number_concentration_of_cloud_liquid_water_particles_in_air",
+     kMade},
     {kDropletNumber, "ICON", "qnc", "", kReal},
     {kDropletNumber, "WRF", "qncloud", "", kMade},
     {kDropletNumber, "WRF", "qndrop", ""},
@@ -314,22 +315,35 @@ constexpr NameRow kTable[] = {
     {kLongitude, "ICON", "clon", "", kReal},
     {kLongitude, kAny, "lons", ""}};
 
-constexpr std::array<const char*, kQuantities> kWords = {
-    "cloud_water",         "rain",
-    "cloud_ice",           "snow",
-    "graupel",             "cloud_fraction",
-    "droplet_number",      "droplet_radius",
-    "ice_radius",          "temperature",
-    "potential_temperature", "liquid_potential_temperature",
-    "pressure",            "density",
-    "surface_pressure",    "log_surface_pressure",
-    "specific_humidity",   "vapour_mixing_ratio",
-    "relative_humidity",   "terrain",
-    "surface_geopotential", "land_fraction",
-    "half_level_height",   "level_height",
-    "geopotential_height", "geopotential",
-    "latitude",            "longitude",
-    "other"};
+constexpr std::array<const char*, kQuantities> kWords = {"cloud_water",
+                                                         "rain",
+                                                         "cloud_ice",
+                                                         "snow",
+                                                         "graupel",
+                                                         "cloud_fraction",
+                                                         "droplet_number",
+                                                         "droplet_radius",
+                                                         "ice_radius",
+                                                         "temperature",
+                                                         "potential_temperature",
+                                                         "liquid_potential_temperature",
+                                                         "pressure",
+                                                         "density",
+                                                         "surface_pressure",
+                                                         "log_surface_pressure",
+                                                         "specific_humidity",
+                                                         "vapour_mixing_ratio",
+                                                         "relative_humidity",
+                                                         "terrain",
+                                                         "surface_geopotential",
+                                                         "land_fraction",
+                                                         "half_level_height",
+                                                         "level_height",
+                                                         "geopotential_height",
+                                                         "geopotential",
+                                                         "latitude",
+                                                         "longitude",
+                                                         "other"};
 
 // One way to know a model by: a word in any of the file's usual attributes of origin, or variables
 // and dimensions that no other has together.
@@ -383,9 +397,8 @@ std::string model_of_file(const DataFile& file) {
   if (!file.text("CM1 version").empty()) return "CM1";
   for (const Mark& mark : kMarks) {
     if (mark.word ? origin.find(mark.word) != std::string::npos
-                  : std::ranges::all_of(mark.holds, [&](const char* name) {
-                      return !name || holds(file, name);
-                    }))
+                  : std::ranges::all_of(
+                        mark.holds, [&](const char* name) { return !name || holds(file, name); }))
       return mark.model;
   }
   return "";

@@ -7,8 +7,8 @@
 
 namespace nepho::forecast {
 
-// What models call things: one table of rows in name_table.cpp. A model's names are rows more there;
-// a user's own are rows of a file (user_names.h).
+// What models call things: one table of rows in name_table.cpp. A model's names are rows more
+// there; a user's own are rows of a file (user_names.h).
 
 enum class Quantity {
   kCloudWater,
@@ -80,8 +80,8 @@ struct NameRow {
 // In the order in which they are tried.
 std::span<const NameRow> name_table();
 
-// The model that wrote the file, as far as its attributes, variables and dimensions tell: one of the
-// models of the table, or "".
+// The model that wrote the file, as far as its attributes, variables and dimensions tell: one of
+// the models of the table, or "".
 std::string model_of_file(const DataFile& file);
 
 }  // namespace nepho::forecast

@@ -200,8 +200,7 @@ std::vector<WaterVariable> find_water(const DataFile& file, const Accept& accept
 
 void divide_phases(std::vector<WaterVariable>& water, std::vector<std::string>& assumptions) {
   const auto has = [&](Species species) {
-    return std::ranges::any_of(water,
-                               [&](const WaterVariable& w) { return w.species == species; });
+    return std::ranges::any_of(water, [&](const WaterVariable& w) { return w.species == species; });
   };
   const bool has_ice = has(Species::kCloudIce), has_snow = has(Species::kSnow);
   for (WaterVariable& w : water) {
@@ -215,8 +214,8 @@ void divide_phases(std::vector<WaterVariable>& water, std::vector<std::string>& 
     if (ice == liquid)
       std::snprintf(range, sizeof range, "ice below %.0f degC is assumed.", ice);
     else
-      std::snprintf(range, sizeof range, "ice from %.0f degC down, all of it at %.0f degC, is assumed.",
-                    liquid, ice);
+      std::snprintf(range, sizeof range,
+                    "ice from %.0f degC down, all of it at %.0f degC, is assumed.", liquid, ice);
     assumptions.push_back(w.variable->name + " holds liquid and ice: " + range);
   }
 }

@@ -18,12 +18,13 @@ using enum Quantity;
 // quantity, and for mixing ratios the word of a Basis.
 inline constexpr const char* kQuantityAttribute = "nephoscope_quantity";
 inline constexpr const char* kPerAttribute = "nephoscope_per";
+inline constexpr const char* kRowAttribute = "nephoscope_row";  // UserName::where, of GRIB fields
 // What a reader that knows fields by numbers says: the row behind the variable, where no file does.
 inline constexpr const char* kUntestedAttribute = "nephoscope_untested";
 
 // The first variable that answers to the quantity and that `accept` takes: as a user says, then by
-// the names of the file's own model that mean other things elsewhere, by standard names, and by names
-// in the table's order. Null where there is none.
+// the names of the file's own model that mean other things elsewhere, by standard names, and by
+// names in the table's order. Null where there is none.
 using Accept = std::function<bool(const FileVariable&)>;
 const FileVariable* find_named(const DataFile& file, Quantity wanted, const Accept& accept);
 // By plain names, compared without case, for what no quantity stands for.

@@ -90,12 +90,11 @@ void read_sizes(const Model& model, std::size_t time, CloudSetting& setting) {
 std::vector<std::string> said_of_sizes(const Model& model, const WaterStatistics& statistics) {
   std::vector<std::string> said;
   if (has(model, [](Species s) { return s == Species::kCloudWater; }))
-    said.push_back(model.droplet_radius
-                       ? "Droplet radii are the file's, " + model.droplet_radius->name + "."
-                   : model.droplet_number
-                       ? "Droplet radii are by the file's number of droplets, " +
-                             model.droplet_number->name + " (Martin et al. 1994)."
-                       : by_martin(model));
+    said.push_back(
+        model.droplet_radius   ? "Droplet radii are the file's, " + model.droplet_radius->name + "."
+        : model.droplet_number ? "Droplet radii are by the file's number of droplets, " +
+                                     model.droplet_number->name + " (Martin et al. 1994)."
+                               : by_martin(model));
   if (has(model, [](Species s) { return s == Species::kCloudIce; }))
     said.push_back(model.ice_radius ? "Ice radii are the file's, " + model.ice_radius->name + "."
                                     : "Ice radii are by Sun and Rikus (1999), from content, "

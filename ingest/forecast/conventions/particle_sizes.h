@@ -11,8 +11,8 @@ namespace nepho::forecast {
 
 // Sizes of droplets and crystals that a file holds: effective radii, else numbers of droplets.
 
-// As models write units of numbers: "m-3", "cm-3", "kg-1", "#/kg", "  kg(-1)". Value times factor is
-// per kg or per m3. Nothing where they are neither.
+// As models write units of numbers: "m-3", "cm-3", "kg-1", "#/kg", "  kg(-1)". Value times factor
+// is per kg or per m3. Nothing where they are neither.
 struct NumberUnit {
   double factor = 1;
   bool per_kg = true;
@@ -27,7 +27,8 @@ std::optional<double> radius_factor(const FileVariable& variable);
 void find_sizes(const Accept& accept, Model& model);
 // Of one time, in SI.
 void read_sizes(const Model& model, std::size_t time, CloudSetting& setting);
-// What droplets' and crystals' radii come from, and how cloud fraction counts: sentences for `info`.
+// What droplets' and crystals' radii come from, and how cloud fraction counts: sentences for
+// `info`.
 std::vector<std::string> said_of_sizes(const Model& model, const WaterStatistics& statistics);
 
 }  // namespace nepho::forecast

@@ -62,7 +62,8 @@ void read_code(UserName& row, const std::string& text, const char* shape) {
   for (int n = 0; n < 3; ++n) {
     const auto [next, error] = std::from_chars(at, end, row.code[n]);
     const bool last = n == 2;
-    if (error != std::errc() || row.code[n] < 0 || (last ? next != end : next == end || *next != '/'))
+    if (error != std::errc() || row.code[n] < 0 ||
+        (last ? next != end : next == end || *next != '/'))
       throw Error({"no numbers of a GRIB field", row.where, shape, "\"" + text + "\"", ""});
     at = next + 1;
   }
@@ -76,8 +77,8 @@ void read_name(UserName& row, std::string text) {
     row.kind = UserName::Kind::kGrib1;
     read_code(row, text, "grib1:CENTRE/TABLE/NUMBER");
   } else {
-    row.kind = starts(text, "standard_name:") ? UserName::Kind::kStandardName
-                                              : UserName::Kind::kName;
+    row.kind =
+        starts(text, "standard_name:") ? UserName::Kind::kStandardName : UserName::Kind::kName;
     row.name = std::move(text);
   }
 }
@@ -148,8 +149,8 @@ UserNames read_user_names(const std::string& path) {
     names.rows.push_back(std::move(row));
   }
   if (names.rows.empty())
-    throw Error({"there are no names in the names file", path,
-                 std::string("lines of ") + kShape, in.eof() ? "none" : "no such file", ""});
+    throw Error({"there are no names in the names file", path, std::string("lines of ") + kShape,
+                 in.eof() ? "none" : "no such file", ""});
   return names;
 }
 
@@ -163,7 +164,7 @@ void apply_names(const UserNames& names, DataFile& file) {
                       : row.kind == UserName::Kind::kStandardName
                           ? variable.text("standard_name") == row.name
                           : false;
-      any |= is || variable.text("nephoscope_row") == row.where;
+      any |= is || variable.text(kRowAttribute) == row.where;
       if (!is) continue;
       file.set_attribute(variable.id, kQuantityAttribute, word_of(row.quantity));
       if (!row.units.empty()) file.set_attribute(variable.id, "units", row.units);

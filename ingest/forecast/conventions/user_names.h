@@ -25,9 +25,9 @@ struct UserName {
   enum class Kind { kName, kStandardName, kGrib1, kGrib2 };
   Quantity quantity;
   Kind kind = Kind::kName;
-  std::string name;                  // of a variable, or a standard_name
-  int code[3] = {0, 0, 0};           // of GRIB
-  std::string units, per, where;     // "": not said; `where`: "file, line 3"
+  std::string name;               // of a variable, or a standard_name
+  int code[3] = {0, 0, 0};        // of GRIB
+  std::string units, per, where;  // "": not said; `where`: "file, line 3"
 };
 
 struct UserNames {
@@ -35,7 +35,8 @@ struct UserNames {
   std::vector<UserName> rows;
 
   // The row of a field by its numbers, or by ecCodes's shortName; null where there is none.
-  const UserName* of_grib(long edition, long a, long b, long c, const std::string& short_name) const;
+  const UserName* of_grib(long edition, long a, long b, long c,
+                          const std::string& short_name) const;
 };
 
 // Throws Error with the line, and what is known there. An empty path is a file without rows.

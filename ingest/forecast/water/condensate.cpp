@@ -72,13 +72,12 @@ double extinction(Species species, double content, const CloudSetting& setting, 
     return result;
   }
   if (species == Species::kCloudIce) {
-    const auto radius =
-        radius_there(setting.ice_radius_m, place.at, kLargestCrystal_m, statistics);
+    const auto radius = radius_there(setting.ice_radius_m, place.at, kLargestCrystal_m, statistics);
     return content *
-           ice_extinction_m2_per_kg(
-               radius ? *radius
-                      : ice_radius_m(in_cloud(content, setting, place.at), place.temperature_K,
-                                     double(setting.latitude_deg[place.n])));
+           ice_extinction_m2_per_kg(radius ? *radius
+                                           : ice_radius_m(in_cloud(content, setting, place.at),
+                                                          place.temperature_K,
+                                                          double(setting.latitude_deg[place.n])));
   }
   return content * precipitation_extinction_m2_per_kg(species, content, place.temperature_K);
 }
