@@ -190,7 +190,12 @@ Air CfAir::at(std::size_t time, const Vertical& vertical) const {
         profile(*level_pressure_, time, vertical.from_top, unit_of(*level_pressure_, kPressure));
   else if (standard_Pa_)
     air.pressure_Pa = *standard_Pa_;
-  if (density_) {
+#ifdef NEPHO_MUTANT_BASE_DENSITY
+  if (false)
+#else
+  if (density_)
+#endif
+  {
     const UnitOf unit = unit_of(*density_, nepho::kDensity);
     if (is_profile(*density_))
       air.level_density_kg_per_m3 = profile(*density_, time, vertical.from_top, unit);

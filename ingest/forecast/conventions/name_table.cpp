@@ -12,7 +12,12 @@ namespace nepho::forecast {
 namespace {
 
 using enum Quantity;
-constexpr auto kReal = Evidence::kReal, kMade = Evidence::kMade, kNone = Evidence::kNone;
+constexpr auto kReal = Evidence::kReal, kMade = Evidence::kMade;
+#ifdef NEPHO_MUTANT_MARKED
+constexpr auto kNone = Evidence::kMade;
+#else
+constexpr auto kNone = Evidence::kNone;
+#endif
 constexpr auto kDry = Basis::kDryAir, kMoist = Basis::kMoistAir, kVolume = Basis::kVolume;
 constexpr const char* kAny = kAnyModel;
 
@@ -361,6 +366,7 @@ constexpr Mark kMarks[] = {{"WRF", "WRF"},
                            {"UCLA-LES", nullptr, {"dn0", "zt", "xt"}},
                            {"DALES", "DALES"},
                            {"DALES", nullptr, {"thl", "zt", "xt"}},
+                           {"DALES", nullptr, {"ql", "zt", "xt"}},
                            {"SAM", nullptr, {"TABS"}},
                            {"CM1", "CM1"},
                            {"CM1", nullptr, {"prs", "th", "zh"}},

@@ -62,11 +62,15 @@ class Names {
   }
 
   // The table's rows of a quantity: those that hold only in files of this model, those by standard
-  // name, this model's, the others.
+  // name, this model's, those of any model, other models'.
   std::vector<const NameRow*> rows(Quantity quantity) const {
     std::vector<const NameRow*> ordered;
     const auto rank = [&](const NameRow& row) {
-      return row.only_there ? 0 : *row.standard_name ? 1 : is_own(row) ? 2 : 3;
+      return row.only_there                        ? 0
+             : *row.standard_name                  ? 1
+             : is_own(row)                         ? 2
+             : row.model == std::string(kAnyModel) ? 3
+                                                   : 4;
     };
     for (const NameRow& row : name_table())
       if (row.quantity == quantity && holds(row)) ordered.push_back(&row);

@@ -40,13 +40,30 @@ std::vector<std::string> words_of(const std::string& line, const std::string& wh
   return words;
 }
 
-Quantity quantity_of(const std::string& word, const std::string& where) {
+struct AxisWord {
+  const char* word;
+  char axis;
+};
+constexpr AxisWord kAxes[] = {
+    {"x_axis", 'X'}, {"y_axis", 'Y'}, {"level_axis", 'Z'}, {"time_axis", 'T'}};
+
+void read_quantity(UserName& row, const std::string& word) {
   std::string known;
-  for (int n = 0; n < int(Quantity::kOther); ++n) {
-    if (word == word_of(Quantity(n))) return Quantity(n);
+  for (const AxisWord& axis : kAxes) {
+    if (word == axis.word) {
+      row.axis = axis.axis;
+      return;
+    }
+    known += axis.word + std::string(", ");
+  }
+  for (int n = 0; n < kQuantities; ++n) {
+    if (word == word_of(Quantity(n))) {
+      row.quantity = Quantity(n);
+      return;
+    }
     known += (n ? ", " : "") + std::string(word_of(Quantity(n)));
   }
-  throw Error({"no such quantity", where, "one of " + known, "\"" + word + "\"",
+  throw Error({"no such quantity", row.where, "one of " + known, "\"" + word + "\"",
                std::string("lines are: ") + kShape});
 }
 
@@ -120,6 +137,7 @@ std::string text_of(const UserName& row) {
 const UserName* UserNames::of_grib(long edition, long a, long b, long c,
                                    const std::string& short_name) const {
   const auto at = std::ranges::find_if(rows, [&](const UserName& row) {
+    if (row.axis) return false;
     if (row.kind == UserName::Kind::kName) return row.name == short_name;
     const bool same = row.kind == (edition == 2 ? UserName::Kind::kGrib2 : UserName::Kind::kGrib1);
     return same && row.code[0] == a && row.code[1] == b && row.code[2] == c;
@@ -141,7 +159,7 @@ UserNames read_user_names(const std::string& path) {
                  .where = path + ", line " + std::to_string(number)};
     const std::vector<std::string> words = words_of(line, row.where);
     if (words.empty()) continue;
-    row.quantity = quantity_of(words[0], row.where);
+    read_quantity(row, words[0]);
     if (words.size() < 2)
       throw Error({"a quantity without a name", row.where, kShape, "\"" + words[0] + "\"", ""});
     read_name(row, words[1]);
@@ -159,7 +177,13 @@ void apply_names(const UserNames& names, DataFile& file) {
   std::size_t used = 0;
   for (const UserName& row : names.rows) {
     bool any = false;
+    for (int d = 0; row.axis && d < int(file.dimensions().size()); ++d)
+      if (file.name(d) == row.name) {
+        file.set_axis(d, row.axis);
+        any = true;
+      }
     for (const FileVariable& variable : file.variables()) {
+      if (row.axis) break;
       const bool is = row.kind == UserName::Kind::kName ? variable.name == row.name
                       : row.kind == UserName::Kind::kStandardName
                           ? variable.text("standard_name") == row.name
@@ -167,7 +191,9 @@ void apply_names(const UserNames& names, DataFile& file) {
       any |= is || variable.text(kRowAttribute) == row.where;
       if (!is) continue;
       file.set_attribute(variable.id, kQuantityAttribute, word_of(row.quantity));
+#ifndef NEPHO_MUTANT_USER_UNITS
       if (!row.units.empty()) file.set_attribute(variable.id, "units", row.units);
+#endif
       if (!row.per.empty()) file.set_attribute(variable.id, kPerAttribute, row.per);
     }
     used += any;

@@ -14,7 +14,8 @@ namespace nepho::forecast {
 //   # a comment
 //   QUANTITY NAME [units=UNIT] [per=dry_air|moist_air]
 //
-// QUANTITY is a word_of(). NAME is one of
+// QUANTITY is a word_of(); or x_axis, y_axis, level_axis or time_axis, of a dimension. NAME is one
+// of
 //   QLIQ                     a netCDF variable, or a GRIB shortName of ecCodes
 //   standard_name:WORD       of the variable
 //   grib2:0/1/200            discipline, category, number
@@ -24,6 +25,7 @@ namespace nepho::forecast {
 struct UserName {
   enum class Kind { kName, kStandardName, kGrib1, kGrib2 };
   Quantity quantity;
+  char axis = 0;  // T, Z, Y, X: of a dimension, and `quantity` says nothing
   Kind kind = Kind::kName;
   std::string name;               // of a variable, or a standard_name
   int code[3] = {0, 0, 0};        // of GRIB
