@@ -331,6 +331,25 @@ TEST(UserNames, DryAirAndPartsAddUp) {
   EXPECT_NEAR(depth("dry_air") / wanted(2e-4 * density * 0.98), 1, 2e-3);
 }
 
+TEST(UserNames, AVariableWithoutUnitsIsNamed) {
+  ModelFile file;
+  file.file = "unitless";
+  file.variables = {
+      {"ql", "kg/kg", Quantity::kCloudWater, Variable::kWater, [](int) { return 4e-4; }},
+      {"chaleur", "", Quantity::kTemperature, Variable::kField, ModelFile::temperature_K}};
+  const std::string path = file.write();
+  std::string text;
+  try {
+    open_with(path, names_file("temperature chaleur"));
+  } catch (const Error& e) {
+    text = e.what();
+  }
+  EXPECT_NE(text.find("[chaleur]: the unit of a variable that the names file names"),
+            std::string::npos)
+      << text;
+  open_with(path, names_file("temperature chaleur units=K"));
+}
+
 TEST(UserNames, BadLinesAreNamed) {
   struct Case {
     const char *text, *says, *line;

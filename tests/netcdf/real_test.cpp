@@ -2,10 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
+#include "accuracy_report.h"
 #include "core/error.h"
+#include "forecast/conventions/names.h"
+#include "forecast/water/air.h"
+#include "forecast/water/water.h"
 #include "geo/place.h"
 #include "nc_writer.h"
 #include "optical_depths.h"
@@ -13,6 +19,7 @@
 #include "sources/netcdf/open_netcdf.h"
 
 namespace nepho::forecast {
+using nepho::test::report_accuracy;
 namespace {
 
 std::unique_ptr<Forecast> open(const std::string& name) {
@@ -136,6 +143,105 @@ TEST(RealFiles, UnifiedModel) {
   EXPECT_GT(total / in_cloud, 0.7);
   EXPECT_LT(total / in_cloud, 1.4);
   EXPECT_GT(xy / std::sqrt(xx * yy), 0.9);
+}
+
+// Each layer of stratiform cloud, two ways. By our own radii the difference is theirs: the file's
+// optical depths are of radii that it holds beside them (Reff), and with those, the same water and
+// the same heights they are met. The file's are of the cloudy part of a layer, ours of all of it.
+TEST(RealFiles, UnifiedModelsLayers) {
+  const netcdf::NcFile file(std::string(NEPHO_TEST_REAL_DATA) + "/nc/um_38lev_cosp_input_2d.nc",
+                            {});
+  const auto all = [&](const char* name) { return file.read_all(*file.find(name)); };
+  const std::vector<double> depth = all("dtau_s"), cover = all("tca"), convective = all("cca"),
+                            liquid = all("mr_lsliq"), ice = all("mr_lsice"), radius = all("Reff"),
+                            p = all("pfull"), t = all("T_abs"), q = all("qv"),
+                            land = all("landmask"), half = all("phalf");
+  const std::size_t cells = 17 * 9, of_ice = 38 * cells;
+  double theirs = 0, by_their_radii = 0, by_ours = 0, squares = 0, their_squares = 0;
+  std::size_t layers = 0;
+  for (std::size_t k = 0; k + 1 < 38; ++k)
+    for (std::size_t n = 0; n < cells; ++n) {
+      const std::size_t at = k * cells + n;
+      if (!(depth[at] > 0) || !(cover[at] > 0.01) || convective[at] > 0) continue;
+      const double density = moist_density_kg_per_m3(p[at], t[at], q[at]);
+      const double thick_m = (half[at] - half[at + cells]) / (density * 9.80665);
+      const double l = liquid[at] * density, i = ice[at] * density;
+      const double rl = radius[at], ri = radius[of_ice + at];
+      const double with_theirs =
+          thick_m * ((rl > 0 ? 1.5 * l / (1000 * rl) : 0) + (ri > 0 ? 1.5 * i / (917 * ri) : 0));
+      const double ours =
+          thick_m * (l * droplet_extinction_m2_per_kg(
+                             droplet_radius_m(l / cover[at], droplets_over(land[n]))) +
+                     i * ice_extinction_m2_per_kg(ice_radius_m(i / cover[at], t[at], 45)));
+      const double mean = depth[at] * cover[at];
+      ++layers;
+      theirs += mean;
+      by_their_radii += with_theirs;
+      by_ours += ours;
+      squares += (ours - mean) * (ours - mean);
+      their_squares += mean * mean;
+    }
+  std::printf(
+      "measured: %zu layers, optical depth over the file's: by its radii %.3f, by ours %.3f, rms "
+      "of "
+      "layers %.3f of the file's rms\n",
+      layers, by_their_radii / theirs, by_ours / theirs, std::sqrt(squares / their_squares));
+  EXPECT_GT(layers, 500u);
+}
+
+// Mie sums of a gamma distribution by another program (ecRad's droplet table, Hogan & Bozzo 2018,
+// doi:10.1029/2018MS001364): extinction of 1 g/m3 at 0.55 um.
+TEST(RealFiles, DropletsAreEcRads) {
+  const netcdf::NcFile file(
+      std::string(NEPHO_TEST_REAL_DATA) + "/optics_truth/mie_droplet_scattering.nc", {});
+  const auto all = [&](const char* name) { return file.read_all(*file.find(name)); };
+  const std::vector<double> radius = all("effective_radius"), wavelength = all("wavelength"),
+                            table = all("mass_extinction_coefficient");
+  std::size_t w = 0;
+  while (w + 1 < wavelength.size() && !(wavelength[w] >= 550e-9 && wavelength[w + 1] < 550e-9)) ++w;
+  ASSERT_LT(w + 1, wavelength.size());
+  const double part = (wavelength[w] - 550e-9) / (wavelength[w] - wavelength[w + 1]);
+  double worst = 0, at_ten = 1;
+  for (std::size_t r = 0; r < radius.size(); ++r) {
+    if (radius[r] < 3.99e-6 || radius[r] > 30.01e-6) continue;
+    const double theirs =
+        (1 - part) * table[r * wavelength.size() + w] + part * table[r * wavelength.size() + w + 1];
+    const double apart = droplet_extinction_m2_per_kg(radius[r]) / theirs - 1;
+    worst = std::max(worst, std::abs(apart));
+    if (std::abs(radius[r] - 10e-6) < 1e-8) at_ten = apart;
+  }
+  report_accuracy("netcdf", "droplet extinction at 10 um against ecRad's Mie table",
+                  std::abs(at_ten), 0.01, "1");
+  report_accuracy("netcdf", "droplet extinction from 4 to 30 um against ecRad's Mie table", worst,
+                  0.02, "1");
+  EXPECT_LT(std::abs(at_ten), 0.01);
+  EXPECT_LT(worst, 0.02);
+}
+
+// Rows of the table of names that are marked as behind a real file are those of these files.
+TEST(RealFiles, MarksOfNamesAreTrue) {
+  std::set<const NameRow*> held;
+  for (const char* name :
+       {"nc/wrf_katrina_10km_nest_4t.nc", "nc/um_38lev_cosp_input_2d.nc",
+        "nc/icon_les_stratocumulus_L150.nc", "nc/gfs_2p5deg_20110110_f120_DERIVED_cf_packed.nc",
+        "edge/psyplot_icon_test.nc"}) {
+    const netcdf::NcFile file(std::string(NEPHO_TEST_REAL_DATA) + "/" + name, {});
+    for (const NameRow& row : name_table())
+      for (const FileVariable& v : file.variables()) {
+        std::string lower = v.name;
+        for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
+        if (*row.name ? lower == row.name : v.text("standard_name") == row.standard_name)
+          held.insert(&row);
+      }
+  }
+  std::size_t marked = 0;
+  for (const NameRow& row : name_table()) {
+    if (row.evidence != Evidence::kReal) continue;
+    ++marked;
+    EXPECT_TRUE(held.contains(&row)) << row.model << ": " << word_of(row.quantity) << " "
+                                     << row.name << row.standard_name << " is marked only";
+  }
+  EXPECT_GT(marked, 20u);
 }
 
 TEST(RealFiles, IconLes) {

@@ -261,6 +261,7 @@ void require_water(const DataFile& file, const std::vector<WaterVariable>& water
 std::string untested(const DataFile& file, Quantity quantity, const FileVariable& variable) {
   if (const std::string row = variable.text(kUntestedAttribute); !row.empty())
     return variable.name + " is read as " + row + ": untested, no file stands behind that row.";
+  if (!variable.text(kRowAttribute).empty()) return "";
   const NameRow* row = row_of(file, quantity, variable);
   if (!row || row->evidence != Evidence::kNone) return "";
   const std::string how = by_standard_name(*row, variable)

@@ -18,8 +18,9 @@ using enum Quantity;
 // quantity, and for mixing ratios the word of a Basis.
 inline constexpr const char* kQuantityAttribute = "nephoscope_quantity";
 inline constexpr const char* kPerAttribute = "nephoscope_per";
-inline constexpr const char* kRowAttribute = "nephoscope_row";  // UserName::where, of GRIB fields
-// What a reader that knows fields by numbers says: the row behind the variable, where no file does.
+// What a reader that knows fields by numbers says of a variable: the row behind it (UserName::where of
+// a user's), and the row again where no file stands behind it.
+inline constexpr const char* kRowAttribute = "nephoscope_row";
 inline constexpr const char* kUntestedAttribute = "nephoscope_untested";
 
 // The first variable that answers to the quantity and that `accept` takes: as a user says, then by

@@ -172,6 +172,30 @@ UserNames read_user_names(const std::string& path) {
   return names;
 }
 
+namespace {
+
+bool has_no_unit(Quantity quantity) {
+  return quantity == Quantity::kCloudFraction || quantity == Quantity::kLandFraction ||
+         quantity == Quantity::kLogSurfacePressure || quantity == Quantity::kOther;
+}
+
+// A variable without a unit would be left aside without a word.
+void check_units(const UserNames& names, const DataFile& file) {
+  for (const FileVariable& variable : file.variables()) {
+    const std::string word = variable.text(kQuantityAttribute), unit = variable.text("units");
+    if (word.empty() || !(unit.empty() || unit == "unknown")) continue;
+    int n = 0;
+    while (word != word_of(Quantity(n))) ++n;
+    if (has_no_unit(Quantity(n))) continue;
+    throw Error({"the unit of a variable that the names file names is not known",
+                 file.where(variable), "units in the file, or units=UNIT in its row",
+                 "\"" + unit + "\"",
+                 "in " + names.path + ": " + word + " ... units=K, or Pa, m, kg/kg"});
+  }
+}
+
+}  // namespace
+
 void apply_names(const UserNames& names, DataFile& file) {
   std::string missing;
   std::size_t used = 0;
@@ -200,6 +224,7 @@ void apply_names(const UserNames& names, DataFile& file) {
     if (!any) missing += (missing.empty() ? "" : ", ") + text_of(row);
   }
   if (names.rows.empty()) return;
+  check_units(names, file);
   file.add_fact(std::to_string(used) + " of " + std::to_string(names.rows.size()) + " rows of " +
                 names.path + " are of this file" +
                 (missing.empty() ? "." : "; it does not hold " + missing + "."));

@@ -6,17 +6,17 @@ namespace nepho::grib {
 namespace {
 
 using Evidence = forecast::Evidence;
-constexpr auto kMade = Evidence::kMade;
+constexpr auto kReal = Evidence::kReal, kMade = Evidence::kMade, kNone = Evidence::kNone;
 constexpr const char* kAny = forecast::kAnyModel;
 constexpr const char* kLayerFraction = "cloud_area_fraction_in_atmosphere_layer";
 
 // GRIB2 tables 4.2: specific contents are per mass of moist air, mixing ratios per dry air.
 constexpr ParameterRow kGrib2[] = {
-    {0, 0, 0, "t", "air_temperature", "K", false, kAny, kMade},
+    {0, 0, 0, "t", "air_temperature", "K", false, kAny, kReal},
     {0, 1, 0, "q", "specific_humidity", "kg kg-1", false, kAny, kMade},
-    {0, 1, 1, "r", "relative_humidity", "%", false, kAny, kMade},
+    {0, 1, 1, "r", "relative_humidity", "%", false, kAny, kReal},
     {0, 1, 2, "mixr", "humidity_mixing_ratio", "kg kg-1", false, kAny, kMade},
-    {0, 1, 22, "clwmr", "", "kg kg-1", true, "GFS", kMade},
+    {0, 1, 22, "clwmr", "", "kg kg-1", true, "GFS", kReal},
     {0, 1, 23, "icmr", "", "kg kg-1", true, "GFS", kMade},
     {0, 1, 24, "rwmr", "", "kg kg-1", true, "GFS", kMade},
     {0, 1, 25, "snmr", "", "kg kg-1", true, "GFS", kMade},
@@ -26,7 +26,7 @@ constexpr ParameterRow kGrib2[] = {
     {0, 1, 84, "ciwc", "mass_fraction_of_cloud_ice_in_air", "kg kg-1", true, "IFS", kMade},
     {0, 1, 85, "crwc", "mass_fraction_of_rain_in_air", "kg kg-1", true, "IFS", kMade},
     {0, 1, 86, "cswc", "mass_fraction_of_snow_in_air", "kg kg-1", true, "IFS", kMade},
-    {0, 6, 1, "tcc", kLayerFraction, "%", false, kAny, kMade},
+    {0, 6, 1, "tcc", kLayerFraction, "%", false, kAny, kReal},
     {0, 6, 22, "clc", kLayerFraction, "%", false, "COSMO", kMade},
     {0, 6, 23, "icmr", "", "kg kg-1", true, "GFS", kMade},
     {0, 6, 28, "qndrop", "", "kg-1", false, kAny, kMade},
@@ -36,12 +36,12 @@ constexpr ParameterRow kGrib2[] = {
     {0, 6, 38, "lwc", "mass_concentration_of_cloud_liquid_water_in_air", "kg m-3", true, kAny,
      kMade},
     {0, 6, 39, "iwc", "mass_concentration_of_cloud_ice_in_air", "kg m-3", true, kAny, kMade},
-    {0, 3, 0, "pres", "air_pressure", "Pa", false, kAny, kMade},
+    {0, 3, 0, "pres", "air_pressure", "Pa", false, kAny, kReal},
     {0, 3, 4, "z", "geopotential", "m2 s-2", false, kAny, kMade},
-    {0, 3, 5, "gh", "geopotential_height", "gpm", false, kAny, kMade},
+    {0, 3, 5, "gh", "geopotential_height", "gpm", false, kAny, kReal},
     {0, 3, 6, "altitude", "altitude", "m", false, kAny, kMade},
     {0, 3, 25, "lnsp", "", "1", false, kAny, kMade},
-    {2, 0, 0, "lsm", "", "1", false, kAny, kMade},
+    {2, 0, 0, "lsm", "", "1", false, kAny, kReal},
     {0, 191, 1, "clat", "", "degrees_north", false, "ICON", kMade},
     {0, 191, 2, "clon", "", "degrees_east", false, "ICON", kMade},
 };
@@ -62,7 +62,7 @@ constexpr ParameterRow kGrib1[] = {
     {98, 128, 129, "z", "geopotential", "m2 s-2", false, "IFS", kMade},
     {98, 128, 130, "t", "air_temperature", "K", false, "IFS", kMade},
     {98, 128, 133, "q", "specific_humidity", "kg kg-1", false, "IFS", kMade},
-    {98, 128, 134, "pres", "air_pressure", "Pa", false, "IFS", kMade},
+    {98, 128, 134, "pres", "air_pressure", "Pa", false, "IFS", kNone},
     {98, 128, 152, "lnsp", "", "1", false, "IFS", kMade},
     {98, 128, 156, "gh", "geopotential_height", "gpm", false, "IFS", kMade},
     {98, 128, 157, "r", "relative_humidity", "%", false, "IFS", kMade},

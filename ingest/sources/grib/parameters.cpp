@@ -74,11 +74,19 @@ void name_if_unknown(const Message& message, Parameter& p) {
   if (p.name.empty() || p.name == "unknown") p.name = "param" + message.text("paramId");
 }
 
-// What a user says of a field, in words that the conventions look for.
+// What a user says of a field, in words that the conventions look for. Numbers that ecCodes does
+// not know are told apart by the numbers themselves.
 Parameter by_user(const forecast::UserName& user, const Message& message, const Level& level,
                   Parameter p) {
-  name_if_unknown(message, p);
+  if (user.kind != forecast::UserName::Kind::kName) {
+    p.name = user.kind == forecast::UserName::Kind::kGrib2 ? "grib2" : "grib1";
+    for (const int number : user.code) p.name += "_" + std::to_string(number);
+  }
+#ifdef NEPHO_MUTANT_USER_NUMBER
+  p.units = "kg kg-1";
+#else
   p.units = user.units.empty() ? message.text("units") : user.units;
+#endif
   p.known = true;
   p.water = forecast::is_condensate(user.quantity) && is_vertical(level.kind);
   p.said.emplace_back(forecast::kRowAttribute, user.where);
@@ -155,6 +163,7 @@ Parameter parameter_of(const Message& message, const Level& level,
     p.known = true;
     p.water = row->water && is_vertical(level.kind);
     p.constant = p.name == "clat" || p.name == "clon";
+    p.said.emplace_back(forecast::kRowAttribute, text_of(*row));
     if (row->evidence == forecast::Evidence::kNone)
       p.said.emplace_back(forecast::kUntestedAttribute, text_of(*row));
     if (row->water && !p.water) p.name += "_" + level.name;  // a column's, or a cloud top's
