@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include "accuracy_report.h"
 #include "forecast/conventions/particle_sizes.h"
@@ -208,6 +211,63 @@ TEST(ModelNames, FractionWithoutWaterHasAStatedOne) {
       EXPECT_EQ(ice, all);
     }
   }
+}
+
+// CM1 up to release 19: dimensions ni, nj, nk with coordinates xh, yh, z in km; times in seconds.
+TEST(ModelNames, OldCm1) {
+  const std::string path = folder() / "cm1r19.nc";
+  {
+    NcWriter nc(path);
+    for (const auto& [name, size] : {std::pair{"time", 2}, {"nk", 3}, {"nj", 3}, {"ni", 4}})
+      nc.dimension(name, std::size_t(size));
+    nc.global("CM1 version", std::string("19.10"));
+    nc.variable("time", NC_DOUBLE, {"time"}, {3600, 7200}, {{"units", "s"}});
+    nc.variable("xh", NC_DOUBLE, {"ni"}, {-1.5, -0.5, 0.5, 1.5}, {{"units", "km"}});
+    nc.variable("yh", NC_DOUBLE, {"nj"}, {-1, 0, 1}, {{"units", "km"}});
+    nc.variable("z", NC_DOUBLE, {"nk"}, {0.25, 0.75, 1.25}, {{"units", "km"}});
+    const auto put = [&](const char* name, const char* units, auto value) {
+      std::vector<double> values;
+      for (int n = 0; n < 2 * 36; ++n) values.push_back(value(n / 36, n / 12 % 3, n % 12));
+      nc.variable(name, NC_FLOAT, {"time", "nk", "nj", "ni"}, values,
+                  {{"units", std::string(units)}});
+    };
+    put("prs", "Pa", [](int, int k, int) { return 97000.0 - 5000 * k; });
+    put("th", "K", [](int, int k, int) { return 300.0 + k; });
+    put("qc", "kg/kg", [](int t, int k, int n) { return k == 1 && n == 5 ? 2e-4 * (t + 1) : 0; });
+  }
+  const auto f = open(path);
+  EXPECT_EQ(f->times_s(), (std::vector<double>{0, 3600}));
+  EXPECT_EQ(f->time_origin_ns(), 3600'000'000'000);
+  EXPECT_TRUE(says(*f, "The times count from no date"));
+  const ForecastColumns c = f->columns(1);
+  const double density = 92000 / (kGas * 301 * std::pow(0.92, 2.0 / 7)), content = 4e-4 * density;
+  EXPECT_NEAR(double(c.extinction_per_m[5 * 3 + 1]) /
+                  by_radius(content, radius_of(content, 50.575e6, 0.77)),
+              1, 2e-3);
+  EXPECT_NEAR(double(c.interface_m[5 * 4 + 1]), 500, 0.5);
+}
+
+// The table of docs/names.md says of each model what the marks say.
+TEST(ModelNames, PageIsTrue) {
+  std::ifstream page(NEPHO_TEST_NAMES_PAGE);
+  ASSERT_TRUE(page);
+  std::set<std::string> said, marked;
+  for (std::string line; std::getline(page, line);) {
+    std::istringstream cells(line);
+    std::string bar, model, real, made, none;
+    if (cells >> bar >> model >> bar >> real >> bar >> made >> bar >> none && bar == "|" &&
+        !real.empty() && std::isdigit(static_cast<unsigned char>(real[0])))
+      said.insert(model + " " + real + " " + made + " " + none);
+  }
+  std::map<std::string, std::array<int, 3>> counts;
+  for (const NameRow& row : name_table()) ++counts[row.model][std::size_t(row.evidence)];
+  for (const auto& [model, n] : counts)
+    if (model != kAnyModel)
+      marked.insert(model + " " + std::to_string(n[0]) + " " + std::to_string(n[1]) + " " +
+                    std::to_string(n[2]));
+  EXPECT_EQ(said, marked);
+  if (HasFailure())
+    for (const std::string& row : marked) std::printf("page: %s\n", row.c_str());
 }
 
 TEST(ModelNames, UnitsOfSizes) {

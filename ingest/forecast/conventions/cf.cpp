@@ -15,6 +15,7 @@
 #include "forecast/conventions/horizontal.h"
 #include "forecast/conventions/model.h"
 #include "forecast/conventions/particle_sizes.h"
+#include "forecast/conventions/plain_times.h"
 #include "forecast/conventions/unstructured.h"
 #include "forecast/conventions/vertical.h"
 #include "forecast/files/file_time.h"
@@ -137,6 +138,11 @@ std::vector<std::int64_t> CfFile::times_ns(Model& model) const {
     axis = at == file->variables().end() ? nullptr : &*at;
   }
   if (axis) return read_times_ns(*file, *axis);
+  if (roles.time >= 0)
+    if (const auto plain = plain_times_ns(*file, roles.time)) {
+      model.assumptions.push_back("The times count from no date: from 1970-01-01 00:00 UTC on.");
+      return *plain;
+    }
   if (roles.time >= 0 && file->size(roles.time) > 1)
     throw Error({"the file does not say which times it holds",
                  file->path() + " [" + file->name(roles.time) + "]",

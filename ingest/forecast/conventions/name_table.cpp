@@ -247,6 +247,7 @@ constexpr NameRow kTable[] = {
     {kTerrain, kAny, "", "surface_height", kReal},
     {kTerrain, kAny, "", "height_above_sea_level"},
     {kTerrain, "WRF", "hgt", "", kReal},
+    {kTerrain, "GFS", "hgtsfc", ""},
     {kTerrain, kAny, "orog", ""},
     {kTerrain, "UM", "orography", "", kReal},
     {kTerrain, "ICON", "topography_c", "", kReal},

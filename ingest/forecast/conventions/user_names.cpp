@@ -194,9 +194,25 @@ void check_units(const UserNames& names, const DataFile& file) {
   }
 }
 
+// Of scalar points: CM1's up to release 19.
+void adopt_coordinates(DataFile& file) {
+  for (int d = 0; d < int(file.dimensions().size()); ++d) {
+    const auto along = [&](const FileVariable* v) {
+      return v && v->numeric && v->dimensions == std::vector<int>{d};
+    };
+    if (along(file.find(file.name(d)))) continue;
+    for (const char* name : {"xh", "yh", "zh", "z"})
+      if (along(file.find(name))) {
+        file.rename_dimension(d, name);
+        break;
+      }
+  }
+}
+
 }  // namespace
 
 void apply_names(const UserNames& names, DataFile& file) {
+  adopt_coordinates(file);
   std::string missing;
   std::size_t used = 0;
   for (const UserName& row : names.rows) {

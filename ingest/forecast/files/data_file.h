@@ -83,6 +83,9 @@ class DataFile {
 
   // Before the file is shared: what is said of a variable from elsewhere, in place of what it says.
   void set_attribute(int variable, const std::string& name, const std::string& text);
+  void rename_dimension(int dimension, const std::string& name) {
+    dimensions_[std::size_t(dimension)].name = name;
+  }
   void set_axis(int dimension, char axis) { dimensions_[std::size_t(dimension)].axis = axis; }
   void add_fact(std::string fact) { facts_.push_back(std::move(fact)); }
 

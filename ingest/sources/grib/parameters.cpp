@@ -82,10 +82,9 @@ Parameter by_user(const forecast::UserName& user, const Message& message, const 
     p.name = user.kind == forecast::UserName::Kind::kGrib2 ? "grib2" : "grib1";
     for (const int number : user.code) p.name += "_" + std::to_string(number);
   }
+  p.units = user.units.empty() ? message.text("units") : user.units;
 #ifdef NEPHO_MUTANT_USER_NUMBER
   p.units = "kg kg-1";
-#else
-  p.units = user.units.empty() ? message.text("units") : user.units;
 #endif
   p.known = true;
   p.water = forecast::is_condensate(user.quantity) && is_vertical(level.kind);
