@@ -171,7 +171,6 @@ TEST(GribNames, AUserTellsWhatNumbersAre) {
   request.names_file = path;
   const auto f = open_grib(request);
   EXPECT_TRUE(says(f->facts(), "3 of 3 rows of " + path + " are of this file."));
-  EXPECT_TRUE(says(f->facts(), "clwmr (rain)"));
   const forecast::ForecastColumns c = f->columns(0);
   const auto density = [](double Pa) { return Pa / (287.058 * 280 * (1 + 0.608 * 0.02)); };
   const double content = 4e-4 * 0.98 * density(80000);
@@ -183,6 +182,21 @@ TEST(GribNames, AUserTellsWhatNumbersAre) {
   EXPECT_NEAR(double(c.extinction_per_m[0]) / (rain * forecast::precipitation_extinction_m2_per_kg(
                                                           forecast::Species::kRain, rain, 280)),
               1, 2e-3);
+}
+
+// Cloud fraction on levels and nothing else: a stated water.
+TEST(GribNames, FractionAloneHasAStatedWater) {
+  std::string bytes;
+  for (const double hPa : {900, 800, 700}) {
+    bytes += one(2, grib2(98, 0, 6, 32), isobaric(2, hPa), hPa == 800 ? 0.5 : 0);
+    bytes += one(2, grib2(98, 0, 0, 0), isobaric(2, hPa), 280);
+  }
+  const auto f = open({write_bytes("fraction.grib2", bytes)});
+  EXPECT_TRUE(says(f->assumptions(), "There is no cloud water, only the cloud fraction cc"));
+  const forecast::ForecastColumns c = f->columns(0);
+  EXPECT_EQ(c.extinction_per_m[0], 0);
+  EXPECT_GT(c.extinction_per_m[1], 1e-3f);
+  EXPECT_EQ(c.extinction_per_m[2], 0);
 }
 
 TEST(GribNames, GroundIsNamedAsGround) {

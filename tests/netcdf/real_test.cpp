@@ -148,7 +148,7 @@ TEST(RealFiles, UnifiedModel) {
 // Each layer of stratiform cloud. The file's optical depths are of the cloudy part of a layer:
 // times the cover they are those of its water with one radius for droplets and one for crystals, to
 // a fifth (and to a half without the cover). Those radii, 17 and 51 um, are the difference to ours:
-// Martin's droplets over land are 5 to 6 um. Its radii for radars (Reff) fit less.
+// Martin's droplets over land are 5 to 6 um.
 TEST(RealFiles, UnifiedModelsLayers) {
   const netcdf::NcFile file(std::string(NEPHO_TEST_REAL_DATA) + "/nc/um_38lev_cosp_input_2d.nc",
                             {});

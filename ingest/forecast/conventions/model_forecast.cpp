@@ -285,7 +285,8 @@ void ModelForecast::say(const WaterStatistics& s) {
   facts.push_back("Water: " + names + ".");
   if (const std::string wrote = model_of_file(*model_.file); !wrote.empty())
     facts.push_back("The names are those of " + wrote + ".");
-  for (std::string& said : said_of_sizes(model_, s)) model_.assumptions.push_back(std::move(said));
+  for (SaidOfSizes& said : said_of_sizes(model_, s))
+    model_.assumptions.push_back(std::move(said.how));
   facts.push_back(text("Cloud water of a column: up to %.3g kg/m2, mean %.3g kg/m2.",
                        s.highest_cloud_kg_per_m2, s.mean_cloud_kg_per_m2));
   if (s.highest_precipitation_kg_per_m2 > 0)

@@ -90,27 +90,30 @@ void read_sizes(const Model& model, std::size_t time, CloudSetting& setting) {
   setting.number = read(*model.droplet_number, unit.factor);
 }
 
-std::vector<std::string> said_of_sizes(const Model& model, const WaterStatistics& statistics) {
-  std::vector<std::string> said;
+std::vector<SaidOfSizes> said_of_sizes(const Model& model, const WaterStatistics& statistics) {
+  std::vector<SaidOfSizes> said;
   if (has(model, [](Species s) { return s == Species::kCloudWater; }))
     said.push_back(
-        model.droplet_radius   ? "Droplet radii are the file's, " + model.droplet_radius->name + "."
-        : model.droplet_number ? "Droplet radii are by the file's number of droplets, " +
-                                     model.droplet_number->name + " (Martin et al. 1994)."
-                               : by_martin(model));
+        {"droplets",
+         model.droplet_radius ? "Droplet radii are the file's, " + model.droplet_radius->name + "."
+         : model.droplet_number ? "Droplet radii are by the file's number of droplets, " +
+                                      model.droplet_number->name + " (Martin et al. 1994)."
+                                : by_martin(model)});
   if (has(model, [](Species s) { return s == Species::kCloudIce; }))
-    said.push_back(model.ice_radius ? "Ice radii are the file's, " + model.ice_radius->name + "."
-                                    : "Ice radii are by Sun and Rikus (1999), from content, "
-                                      "temperature and latitude.");
+    said.push_back({"ice", model.ice_radius
+                               ? "Ice radii are the file's, " + model.ice_radius->name + "."
+                               : "Ice radii are by Sun and Rikus (1999), from content, temperature "
+                                 "and latitude."});
   if (statistics.without_size > 0)
-    said.push_back(std::to_string(statistics.without_size) + " of " +
-                   std::to_string(statistics.sized) +
-                   " of the file's sizes where there is water are missing or no cloud's: there "
-                   "radii are by Martin et al. and Sun and Rikus.");
+    said.push_back({"sizes", std::to_string(statistics.without_size) + " of " +
+                                 std::to_string(statistics.sized) +
+                                 " of the file's sizes where there is water are missing or no "
+                                 "cloud's: there radii are by Martin et al. and Sun and Rikus."});
   if (model.cloud_fraction)
-    said.push_back("Cloud fraction " + model.cloud_fraction->name +
-                   ": radii are those of the water in the cloudy part of a cell; the cell is drawn "
-                   "with its mean extinction.");
+    said.push_back({"cloud fraction",
+                    "Cloud fraction " + model.cloud_fraction->name +
+                        ": radii are those of the water in the cloudy part of a cell; the cell is "
+                        "drawn with its mean extinction."});
   return said;
 }
 

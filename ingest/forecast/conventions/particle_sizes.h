@@ -29,6 +29,10 @@ void find_sizes(const Accept& accept, Model& model);
 void read_sizes(const Model& model, std::size_t time, CloudSetting& setting);
 // What droplets' and crystals' radii come from, and how cloud fraction counts: sentences for
 // `info`.
-std::vector<std::string> said_of_sizes(const Model& model, const WaterStatistics& statistics);
+struct SaidOfSizes {
+  const char* what;  // "droplets"
+  std::string how;
+};
+std::vector<SaidOfSizes> said_of_sizes(const Model& model, const WaterStatistics& statistics);
 
 }  // namespace nepho::forecast

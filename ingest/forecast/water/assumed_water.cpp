@@ -28,7 +28,11 @@ std::vector<float> water_of_fraction(std::span<const float> fraction, const Air&
     for (std::size_t k = 0; k < nz; ++k) {
       const double middle_m = 0.5 * (double(z[k]) + double(z[k + 1])) - double(z[0]);
       const float part = fraction[k * cells + n];
+#ifdef NEPHO_MUTANT_WHOLE_CELL
+      const float cut = part > 0 ? 1 : part;
+#else
       const float cut = std::isnan(part) ? part : std::clamp(part, 0.f, 1.f);
+#endif
       water[k * cells + n] =
           float(double(cut) * kSurfaceWater_kg_per_m3 * std::exp(-middle_m / scale_m));
     }

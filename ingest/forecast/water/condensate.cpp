@@ -86,6 +86,9 @@ double extinction(Species species, double content, const CloudSetting& setting, 
 double liquid_part(const WaterVariable& water, double temperature_K) {
   if (water.freezes_below_K == 0) return 1;
   if (temperature_K < water.freezes_below_K) return 0;
+#ifdef NEPHO_MUTANT_ONE_PHASE
+  return 1;
+#endif
   const double range_K = water.liquid_above_K - water.freezes_below_K;
   return range_K > 0 ? std::min(1.0, (temperature_K - water.freezes_below_K) / range_K) : 1;
 }
@@ -127,6 +130,7 @@ void add_water(const WaterVariable& water, std::span<const float> values, const 
         continue;
       }
       const std::size_t out = n * nz + k;
+      const float* interface_m = &columns.interface_m[n * (nz + 1) + k];
       const double liquid = liquid_part(water, state.temperature_K);
       for (const auto& [species, part] :
            {std::pair{water.species, liquid}, {frozen(water.species), 1 - liquid}}) {
@@ -136,9 +140,9 @@ void add_water(const WaterVariable& water, std::span<const float> values, const 
                        {n, at, state.temperature_K, state.density_kg_per_m3}, statistics);
         columns.extinction_per_m[out] += float(per_m);
         if (is_ice(species)) columns.ice_extinction_per_m[out] += float(per_m);
+        path_kg_per_m2[n] +=
+            float(content * part * (double(interface_m[1]) - double(interface_m[0])));
       }
-      const float* interface_m = &columns.interface_m[n * (nz + 1) + k];
-      path_kg_per_m2[n] += float(content * double(interface_m[1] - interface_m[0]));
       if (content > statistics.highest_content_kg_per_m3) {
         statistics.highest_content_kg_per_m3 = content;
         statistics.highest_variable = water.variable->name;
