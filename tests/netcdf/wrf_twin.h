@@ -17,6 +17,7 @@ struct WrfTwin {
   int nx = 6, ny = 5, nz = 4, nt = 2;
   double dx_m = 10000;
   bool with_xlat = true, with_ice = true;
+  bool with_kinds = false, with_number = false, with_radii = false;  // all water; its sizes
   int scheme = 8;
   double shift_deg = 0;  // of XLONG against the map
   double cloud = 5e-4;   // QCLOUD of cell (2, 1), layer 1, time 0; twice that at time 1
@@ -90,6 +91,20 @@ struct WrfTwin {
     if (with_ice)
       put("QICE", nz, "kg kg-1",
           [&](int, int k, int j, int i) { return k == 3 && j == 3 && i == 4 ? 1e-5 : 0; });
+    const auto in = [](int cell) {
+      return [cell](int, int k, int j, int i) { return k == 1 && j == 2 && i == cell ? 1e-4 : 0; };
+    };
+    const auto same = [](double value) { return [value](int, int, int, int) { return value; }; };
+    if (with_kinds) {
+      put("QRAIN", nz, "kg kg-1", in(1));
+      put("QSNOW", nz, "kg kg-1", in(2));
+      put("QGRAUP", nz, "kg kg-1", in(3));
+    }
+    if (with_number) put("QNCLOUD", nz, "  kg(-1)", same(2e8));
+    if (with_radii) {
+      put("RE_CLOUD", nz, "m", same(12e-6));
+      put("RE_ICE", nz, "m", same(55e-6));
+    }
     return path;
   }
 };

@@ -362,6 +362,7 @@ Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
   }
   scene.volumes.insert(scene.volumes.end(), data.begin(), data.end());
   set_parameter(scene, "grid", "--grid", o.grid);
+  set_parameter(scene, "names", "--names", o.names);
   set_parameter(scene, "up", "--up", o.up);
   set_parameter(scene, "metres_per_unit", "--metres-per-unit", o.metres_per_unit);
   set_parameter(scene, "density_scale", "--density-scale", o.density_scale);

@@ -19,7 +19,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 // Values of an axis in degrees; an axis without units counts as degrees where it is named so.
 std::optional<std::vector<double>> degrees(const DataFile& file, const FileVariable& axis,
-                                           const VariableNames& names) {
+                                           Quantity names) {
   std::vector<double> values = file.read_all(axis);
   const UnitOf unit = unit_of(axis, kAngle);
   const FileVariable* named =

@@ -103,9 +103,9 @@ std::optional<Coefficients> by_names(const DataFile& file, int z) {
   const std::size_t nz = file.size(z);
   const auto read = [&](const char* name, std::size_t more) {
     std::vector<double> values;
-    const FileVariable* v = find_named(file, {{}, {name}}, [](const FileVariable& found) {
-      return found.numeric && found.dimensions.size() == 1;
-    });
+    const FileVariable* v = find_named(
+        file, std::vector<std::string>{name},
+        [](const FileVariable& found) { return found.numeric && found.dimensions.size() == 1; });
     if (!v || file.values_in(*v) <= more) return values;
     const auto first = first_of_some(file, z, file.values_in(*v) - more);
     if (!first) return values;
@@ -121,9 +121,11 @@ std::optional<Coefficients> by_names(const DataFile& file, int z) {
   const bool halves_only = c.a.level.empty();
   if (halves_only && c.a.interface.empty()) return {};
   const char* const name = halves_only ? "hyai" : "hyam";
-  const FileVariable* a = find_named(file, {{}, {name}}, [](const auto& v) { return v.numeric; });
-  const double factor = a_factor(file, *a, halves_only ? c.a.interface : c.a.level,
-                                 find_named(file, {{}, {"p0"}}, [](const auto&) { return true; }));
+  const FileVariable* a =
+      find_named(file, std::vector<std::string>{name}, [](const auto& v) { return v.numeric; });
+  const double factor =
+      a_factor(file, *a, halves_only ? c.a.interface : c.a.level,
+               find_named(file, std::vector<std::string>{"p0"}, [](const auto&) { return true; }));
   scale(c.a.level, factor);
   scale(c.a.interface, factor);
   if (halves_only)

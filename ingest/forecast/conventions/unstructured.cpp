@@ -66,8 +66,8 @@ Centres centres_along(const DataFile& file, std::size_t size) {
   const auto along = [&](const FileVariable& v) {
     return v.numeric && v.dimensions.size() == 1 && file.size(v.dimensions[0]) == size;
   };
-  static const VariableNames kLat = {{}, {"clat", "latCell", "lat", "latitude", "lat_cell"}};
-  static const VariableNames kLon = {{}, {"clon", "lonCell", "lon", "longitude", "lon_cell"}};
+  static const std::vector<std::string> kLat = {"clat", "latCell", "lat", "latitude", "lat_cell"};
+  static const std::vector<std::string> kLon = {"clon", "lonCell", "lon", "longitude", "lon_cell"};
   Centres centres{find_named(file, kLat, along), find_named(file, kLon, along)};
   if (!centres)
     centres = {find_named(file, names::kLatitude, along),

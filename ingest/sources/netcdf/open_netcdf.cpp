@@ -1,12 +1,17 @@
 #include "sources/netcdf/open_netcdf.h"
 
+#include "forecast/conventions/user_names.h"
 #include "sources/netcdf/nc_file.h"
 
 namespace nepho::netcdf {
 
 std::unique_ptr<forecast::Forecast> open_netcdf(forecast::OpenRequest request, IoLock io_lock) {
-  request.open_file = [io_lock](const std::string& path) {
-    return std::make_shared<const NcFile>(path, io_lock);
+  const forecast::UserNames names = forecast::read_user_names(request.names_file);
+  const std::string grid_file = request.grid_file;
+  request.open_file = [io_lock, names, grid_file](const std::string& path) {
+    const auto file = std::make_shared<NcFile>(path, io_lock);
+    if (path != grid_file) forecast::apply_names(names, *file);
+    return file;
   };
   return forecast::open_forecast(request);
 }
