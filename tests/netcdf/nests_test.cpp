@@ -5,12 +5,10 @@
 
 #include "accuracy_report.h"
 #include "made_source.h"
-#include "remapped.h"
+#include "nests.h"
 
 namespace nepho::test {
 namespace {
-
-using forecast::HatDomain;
 
 constexpr double kFog_per_m = 2e-4;
 
@@ -63,102 +61,8 @@ struct Nest final : forecast::Forecast {
   std::vector<std::string> facts() const override { return {}; }
 };
 
-// The hats of all domains on the nest's lattice.
-struct Together {
-  std::shared_ptr<const Nest> nest;
-  forecast::Layout layout;
-  std::vector<std::shared_ptr<const HorizontalGrid>> grids;
-  std::vector<forecast::ForecastColumns> columns;
-  std::unique_ptr<Remapped> finest;  // lends its sums to the hats of all
-
-  using Change = std::function<void(std::vector<forecast::ForecastColumns>&)>;
-  explicit Together(std::shared_ptr<const Nest> n, const Change& change = {}) : nest(std::move(n)) {
-    finest = std::make_unique<Remapped>(nest);
-    layout = finest->layout;
-    for (const auto& [part, time] : nest->domains(0)) {
-      grids.push_back(part->grid(time));
-      columns.push_back(part->columns(time));
-    }
-    if (change) change(columns);
-    std::vector<HatDomain> domains;
-    for (std::size_t d = 0; d < grids.size(); ++d) domains.push_back({*grids[d], columns[d]});
-    finest->remap = std::make_unique<HatRemap>(
-        layout.chart, layout.lattice, domains,
-        forecast::RemapOptions{layout.extend_below_m, 0, forecast::Layers::kSmooth});
-  }
-  const Remapped& all() const { return *finest; }
-
-  // Farthest from one even layer of all columns whose hat lies in the coarsest domain.
-  double worst_seam() const {
-    const ShellChart& chart = *layout.chart;
-    const Index3 n = all().cells();
-    const double q = (2000 - chart.bottom_m()) / chart.thickness_m();
-    const auto k = std::uint32_t(std::lround(q * n[2]));
-    const GridSearch search(grids.back());
-    double worst = 0;
-    std::size_t checked = 0;
-    for (const Column& column : all().columns_with_cloud()) {
-      const GeodeticPoint p = geodetic_point(
-          chart.body(),
-          chart.ecef_m({column.root, {double(column.i) / n[0], double(column.j) / n[1], q}}));
-      const auto found = search.find({p.latitude_deg, p.longitude_deg});
-      const glm::dvec2 size(grids.back()->nx(), grids.back()->ny());
-      if (found.off_cells > 0 || glm::any(glm::lessThan(found.at, glm::dvec2(0.5))) ||
-          glm::any(glm::greaterThan(found.at, size - 0.5)))
-        continue;
-      ++checked;
-      worst = std::max(worst, std::abs(all().sample(column, k) / kFog_per_m - 1));
-    }
-    EXPECT_GT(checked, 1000u);
-    return worst;
-  }
-
-  // Part of a cell that no finer domain covers, by points looked up in their grids.
-  double left(std::size_t domain, int i, int j, const std::vector<GridSearch>& searches) const {
-    constexpr int kPoints = 12;
-    int free = 0;
-    for (int b = 0; b < kPoints; ++b)
-      for (int a = 0; a < kPoints; ++a) {
-        const glm::dvec2 place =
-            grids[domain]->lat_lon_deg(i + (a + 0.5) / kPoints, j + (b + 0.5) / kPoints);
-        bool covered = false;
-        for (std::size_t d = 0; d < domain && !covered; ++d) {
-          const auto found = searches[d].find(place);
-          const auto& missing = columns[d].without_data;
-          covered =
-              found.off_cells == 0 &&
-              (missing.empty() || !missing[std::size_t(found.at.y) * std::size_t(columns[d].nx) +
-                                           std::size_t(found.at.x)]);
-        }
-        free += !covered;
-      }
-    return double(free) / (kPoints * kPoints);
-  }
-
-  // sum beta V over the files' cells, each as far as it is left.
-  double files_total() const {
-    std::vector<GridSearch> searches;
-    for (const auto& grid : grids) searches.emplace_back(grid);
-    double sum = 0;
-    for (std::size_t d = 0; d < grids.size(); ++d) {
-      Remapped own(nest->parts[d]);  // its own lattice is of no matter to the file's sum
-      own.layout.extend_below_m = layout.extend_below_m;
-      own.columns = columns[d];
-      const auto nz = std::size_t(own.columns.nz);
-      for (int j = 0; j < own.columns.ny; ++j)
-        for (int i = 0; i < own.columns.nx; ++i) {
-          const auto cell = std::size_t(j) * std::size_t(own.columns.nx) + std::size_t(i);
-          const auto part = float(left(d, i, j, searches));
-          for (std::size_t k = 0; k < nz; ++k) own.columns.extinction_per_m[cell * nz + k] *= part;
-        }
-      sum += file_total(own);
-    }
-    return sum;
-  }
-};
-
 TEST(Nests, EvenFogOfThreeDomainsHasNoSeam) {
-  const double seam = Together(std::make_shared<Nest>(true)).worst_seam();
+  const double seam = Together(std::make_shared<Nest>(true)).worst_seam(kFog_per_m);
   report_accuracy("netcdf", "an even layer in three nests, farthest sample from it", seam, 1e-5,
                   "1");
   EXPECT_LT(seam, 1e-5);
@@ -185,8 +89,8 @@ TEST(Nests, CellsWithoutDataCoverNothing) {
       }
     }
   };
-  EXPECT_LT(Together(std::make_shared<Nest>(true), make_holes).worst_seam(), 1e-5);
-  const Together holed(std::make_shared<Nest>(false), make_holes);
+  EXPECT_LT(Together(std::make_shared<Nest>(true), 0, make_holes).worst_seam(kFog_per_m), 1e-5);
+  const Together holed(std::make_shared<Nest>(false), 0, make_holes);
   EXPECT_LT(std::abs(holed.all().total() / holed.files_total() - 1), 2e-3);
 }
 

@@ -143,7 +143,9 @@ class NestedForecast : public Forecast {
     const std::vector<std::int64_t>& own = utc_ns_[domain];
     const auto apart = [&](std::int64_t other) { return std::abs(other - ns); };
     const auto at = std::ranges::min_element(own, {}, apart);
+#ifndef NEPHO_MUTANT_ALWAYS_NEAREST
     if (own.size() > 1 && 2 * apart(*at) > longest_step_ns_) return {};
+#endif
     return std::size_t(at - own.begin());
   }
 
