@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kLeastHeight_m = 50;         // of a voxel, where nobody asks for less
 constexpr double kMostSampleColumns = 3e7;    // 2 GB of rows and tiles
-constexpr double kMostNestedColumns = 1.6e7;  // where nobody asked for as many
+constexpr double kMostNestedColumns = 6e6;  // 2 GB, where nobody asked for as many
 
 // Columns at least as narrow as asked; of the model's own width the nearest power of two, where its
 // cells are so wide (500 km) that their edges' curvature counts the next.
