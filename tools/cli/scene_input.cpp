@@ -179,6 +179,13 @@ std::vector<VolumeSpec> one_forecast(std::vector<VolumeSpec> data) {
   return data;
 }
 
+// A grid file of another format than the data's needs the module that reads both.
+void read_grid_with_data(Scene& scene, const std::string& grid) {
+  const bool is_grib = first_bytes(grid).starts_with("GRIB");
+  for (VolumeSpec& volume : scene.volumes)
+    if (volume.source == (is_grib ? "netcdf" : "grib")) volume.source = "forecast";
+}
+
 // For every volume with files, in place of what it has of this name.
 void lay_over(Scene& scene, const SourceParameter& parameter) {
   bool used = false;
@@ -363,6 +370,7 @@ void set_region(Scene& scene, const std::optional<std::string>& value) {
 void set_parameter(Scene& scene, const char* parameter, const std::string& option,
                    const std::optional<std::string>& value) {
   if (value) lay_over(scene, make_parameter(parameter, *value, option));
+  if (value && option == "--grid") read_grid_with_data(scene, *value);
 }
 
 Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
