@@ -10,7 +10,7 @@ namespace nepho::forecast {
 namespace names {
 
 const VariableNames kTemperature = {{"air_temperature", "air_temperature_at_full_level_center"},
-                                    {"t", "ta", "temp", "temperature", "T_abs", "tk", "TABS"}};
+                                    {"t", "ta", "temp", "temperature", "T_abs", "tk", "TABS", "tmp"}};
 const VariableNames kPressure = {{"air_pressure", "air_pressure_at_full_level_center"},
                                  {"pres", "p", "pfull", "pressure", "pa"}};
 const VariableNames kSurfacePressure = {
@@ -30,7 +30,7 @@ const VariableNames kDropletNumber = {
     {"number_concentration_of_cloud_liquid_water_particles_in_air", "qnc"},
     {"qnc", "qncloud", "qndrop", "nc"}};
 const VariableNames kTerrain = {{"surface_altitude", "surface_height", "height_above_sea_level"},
-                                {"hgt", "orog", "orography", "topography_c", "hsurf", "zs",
+                                {"hgt", "hgtsfc", "orog", "orography", "topography_c", "hsurf", "zs",
                                  "terrain", "topo", "topography", "phis_height"}};
 const VariableNames kSurfaceGeopotential = {{"surface_geopotential"},
                                             {"phis", "fis", "z", "z_surf", "geosp"}};
