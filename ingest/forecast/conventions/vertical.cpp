@@ -43,8 +43,10 @@ Vertical find_vertical(const VerticalRequest& request) {
         refuse_levels(file.path() + " [" + file.name(request.z) + "]",
                       "pressures in another order than the heights (" + vertical.how + ")");
       if (file.size(request.z) < 2 && !vertical.has_interfaces)
-        throw Error({"one level has no thickness", file.path(), "at least two levels",
-                     file.name(request.z) + " of size 1", ""});
+        throw Error(
+            {"one level has no thickness", file.path(), "at least two levels",
+             file.name(request.z) + " of size 1",
+             "give the level bounds, half levels or a thickness, or keep a level beside it"});
       if (way == by_thickness && !levels.pressure_Pa.empty())
         vertical.assumptions.push_back("Pressures of the axis " + file.name(request.z) +
                                        " are taken for densities: they are a standard surface's.");
