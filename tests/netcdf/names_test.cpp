@@ -152,6 +152,9 @@ TEST(ModelNames, MarksAreTrue) {
   for (const char* row : {"cloud_ice qice", "rain qrain", "snow qsnow", "graupel qgraup",
                           "droplet_number qncloud", "droplet_radius re_cloud", "ice_radius re_ice"})
     made.insert(std::string("WRF: ") + row);
+  // By those of FV3's levels.
+  for (const char* row : {"layer_thickness delz", "layer_pressure_thickness dpres"})
+    made.insert(std::string(kAnyModel) + ": " + row);
   for (const NameRow& row : name_table())
     if (row.evidence == Evidence::kMade) marked.insert(key(row));
   for (const std::string& row : marked) EXPECT_TRUE(made.contains(row)) << row << " is marked only";

@@ -37,6 +37,8 @@ enum class Quantity {
   kFullLevelHeight,
   kGeopotentialHeight,
   kGeopotential,
+  kLayerThickness,
+  kLayerPressureThickness,
   kLatitude,
   kLongitude,
   kOther  // a name that looks like one of the above, and is not
