@@ -167,7 +167,7 @@ constexpr NameRow kTable[] = {
     only_there({kOther, "PALM", "q", "", kMade}),      // all water
     // Temperature
     only_there({kLiquidPotentialTemperature, "UCLA-LES", "t", "", kMade}),
-    {kTemperature, kAny, "", "air_temperature", kMade},
+    {kTemperature, kAny, "", "air_temperature", kReal},
     {kTemperature, kAny, "", "air_temperature_at_full_level_center", kReal},
     {kTemperature, kAny, "t", "", kReal},
     {kTemperature, kAny, "ta", "", kReal},
@@ -236,7 +236,7 @@ constexpr NameRow kTable[] = {
     {kVapourMixingRatio, "WRF", "qvapor", "", kReal},
     {kVapourMixingRatio, kAny, "mixr", ""},
     {kVapourMixingRatio, kAny, "rv", ""},
-    {kRelativeHumidity, kAny, "", "relative_humidity"},
+    {kRelativeHumidity, kAny, "", "relative_humidity", kReal},
     {kRelativeHumidity, kAny, "r", "", kReal},
     {kRelativeHumidity, kAny, "rh", "", kReal},
     {kRelativeHumidity, kAny, "hur", ""},
@@ -291,7 +291,7 @@ constexpr NameRow kTable[] = {
     {kFullLevelHeight, "COSMO", "hfl", ""},
     {kFullLevelHeight, kAny, "z3d", ""},
     {kFullLevelHeight, kAny, "height_full", ""},
-    {kGeopotentialHeight, kAny, "", "geopotential_height"},
+    {kGeopotentialHeight, kAny, "", "geopotential_height", kReal},
     {kGeopotentialHeight, kAny, "gh", "", kReal},
     {kGeopotentialHeight, "CMIP", "zg", ""},
     {kGeopotentialHeight, "CAM", "z3", ""},
