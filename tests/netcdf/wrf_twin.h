@@ -11,11 +11,13 @@
 
 namespace nepho::forecast::test {
 
-// A WRF file on its Mercator map (true latitude 0, sphere of 6370 km), with a nest that moves by a
-// cell a time.
+// A WRF file on its Mercator map (true latitude 0, sphere of 6370 km), with a nest that moves by
+// some cells a time.
 struct WrfTwin {
   int nx = 6, ny = 5, nz = 4, nt = 2;
-  double dx_m = 10000;
+  double dx_m = 10000, west_m = 0, south_m = 2500000;  // of the first centre, from 90 W 0 N
+  int moves = 1, first_h = 12, step_h = 3;
+  bool flat = false;
   bool with_xlat = true, with_ice = true;
   bool with_kinds = false, with_number = false, with_radii = false;  // all water; its sizes
   int scheme = 8;
@@ -25,11 +27,11 @@ struct WrfTwin {
 
   static constexpr double kRadius_m = 6370000, kDegree = 0.017453292519943295;
   double latitude(int t, double j) const {  // j in centres
-    const double y = (j + t) * dx_m + 2500000;
+    const double y = (j + t * moves) * dx_m + south_m;
     return (2 * std::atan(std::exp(y / kRadius_m)) - M_PI / 2) / kDegree;
   }
-  double longitude(double i) const { return -90 + i * dx_m / kRadius_m / kDegree; }
-  double terrain_m(int i, int j) const { return 100.0 * i + 10 * j; }
+  double longitude(double i) const { return -90 + (i * dx_m + west_m) / kRadius_m / kDegree; }
+  double terrain_m(int i, int j) const { return flat ? 0 : 100.0 * i + 10 * j; }
   // Geopotential of interface k, base and perturbation in one.
   double phi(int k, int i, int j) const {
     return 9.81 * (terrain_m(i, j) + 300.0 * k + 50.0 * k * k);
@@ -58,7 +60,8 @@ struct WrfTwin {
                                        {"CEN_LON", longitude(0.5 * (nx - 1))}})
       nc.global(key, value);
     std::string times;
-    for (int t = 0; t < nt; ++t) times += "2005-08-28_1" + std::to_string(2 + 3 * t) + ":00:00";
+    for (int t = 0; t < nt; ++t)
+      times += "2005-08-28_" + std::to_string(first_h + step_h * t) + ":00:00";
     nc.text("Times", {"Time", "DateStrLen"}, times);
     const auto put = [&](const char* variable, int levels, const char* units, auto value) {
       std::vector<double> values;

@@ -84,13 +84,16 @@ Role of_name(const std::string& dimension) {
 // Latitudes over two of the variable's dimensions.
 const FileVariable* plane_of(const DataFile& file, Quantity names, const FileVariable& variable) {
   return find_named(file, names, [&](const FileVariable& v) {
-    int planes = 0;
+    int planes = 0, long_planes = 0;
     for (const int d : v.dimensions) {
       const bool ours = std::ranges::find(variable.dimensions, d) != variable.dimensions.end();
       if (!ours) return false;
-      planes += file.size(d) > 1 && of_name(file.name(d)) != Role::kTime;
+      const bool place = of_name(file.name(d)) != Role::kTime;
+      planes += place;
+      long_planes += place && file.size(d) > 1;
     }
-    return v.numeric && planes == 2;
+    // A grid of one row or column has it, too.
+    return v.numeric && (planes == 2 || long_planes == 2);
   });
 }
 

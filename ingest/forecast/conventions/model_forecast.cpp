@@ -200,15 +200,19 @@ Loaded ModelForecast::load(std::size_t time) const {
   if (has_ice_) columns.ice_extinction_per_m = columns.extinction_per_m;
   const CloudSetting cloud = setting(index, *model_.grid(index));
   std::vector<float> cloud_path(cells, 0.0f), rain_path(cells, 0.0f);
+  std::vector<char> empty(cells, 1);
   for (const WaterVariable& water : model_.water) {
     const bool is_cloud =
         water.species == Species::kCloudWater || water.species == Species::kCloudIce;
     const std::vector<float> values =
         water.from_fraction ? water_of_fraction(cloud.fraction, air, columns.interface_m, cells)
                             : model_.field(*water.variable, index);
+    for (std::size_t n = 0; n < values.size(); ++n)
+      if (!std::isnan(values[n])) empty[n % cells] = 0;
     add_water(water, values, air, cloud, columns, is_cloud ? cloud_path : rain_path,
               result.statistics);
   }
+  if (std::ranges::find(empty, 1) != empty.end()) columns.without_data = std::move(empty);
   clear_off_planet(*model_.grid(index), columns);
   WaterStatistics& s = result.statistics;
   s.highest_cloud_kg_per_m2 = double(*std::ranges::max_element(cloud_path));

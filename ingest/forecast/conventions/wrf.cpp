@@ -251,7 +251,9 @@ Model WrfFile::model(const std::shared_ptr<WrfFile>& self, const std::optional<R
   for (const char* name : {"PH", "PHB", "P", "PB", "T"}) self->need(name);
   model.utc_ns = self->times_ns(model);
   const auto cells = self->grid(0);
-  if (!self->grids_.at(0).placed)
+  const WrfGrid& first = self->grids_.at(0);
+  model.assumptions = first.assumptions;
+  if (!first.placed)
     model.assumptions.push_back(kNoPlace);
   else if (std::string fact = compare_with_map(file, *cells); !fact.empty())
     model.facts.push_back(std::move(fact));

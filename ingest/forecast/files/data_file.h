@@ -51,6 +51,7 @@ class DataFile {
   // Global attributes.
   std::string text(const std::string& name) const { return global_.text(name); }
   std::optional<double> number(const std::string& name) const { return global_.number(name); }
+  const FileAttribute* attribute(const std::string& name) const { return global_.attribute(name); }
 
   // What the format's reader took for granted, and what it left out: for `info`.
   const std::vector<std::string>& assumptions() const { return assumptions_; }

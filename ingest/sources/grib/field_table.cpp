@@ -33,7 +33,7 @@ std::string number_text(double value) {
   const Grid& grid = table.grids[std::size_t(field.grid)];
   throw Error({"this GRIB grid is not read", table.where(field),
                "regular, rotated or reduced latitudes and longitudes, Lambert, Mercator, polar "
-               "stereographic, or places that ecCodes knows",
+               "stereographic, geostationary views, or places that ecCodes knows",
                grid.text() + ": " + grid.why,
                "interpolate it first, for example with cdo "
                "remapcon,r720x360"});
