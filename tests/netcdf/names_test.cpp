@@ -176,8 +176,12 @@ TEST(ModelNames, RowsWithoutAFileAreSaid) {
   file.file = "untested";
   file.variables = {
       {"iwc", "g m-3", Quantity::kCloudIce, Variable::kWater, [](int) { return 0.01; }},
+      {"ccov", "1", Quantity::kCloudFraction, Variable::kField, [](int) { return 0.5; }},
+      {"land", "1", Quantity::kLandFraction, Variable::kSurface, [](int) { return 1.0; }},
       {"temp", "K", Quantity::kTemperature, Variable::kField, ModelFile::temperature_K}};
   const auto f = open(file.write());
+  EXPECT_TRUE(says(*f, "ccov is read as cloud_fraction"));
+  EXPECT_TRUE(says(*f, "land is read as land_fraction"));
   EXPECT_TRUE(says(*f, "iwc is read as cloud_ice by the name that any model gives it: untested"));
   EXPECT_TRUE(
       says(*f, "temp is read as temperature by the name that any model gives it: untested"));

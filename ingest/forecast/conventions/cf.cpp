@@ -34,6 +34,7 @@ struct CfFile {
   std::shared_ptr<const HorizontalGrid> grid;
   std::optional<CfAir> air;
   const FileVariable *terrain = nullptr, *land = nullptr;
+  Quantity terrain_is = Quantity::kTerrain;
   UnitOf terrain_unit;  // to m: of a height, or of a geopotential
 
   std::vector<float> field(const FileVariable& variable, std::size_t time) const {
@@ -111,6 +112,7 @@ void CfFile::find_ground() {
       return reader->is_surface(v) && unit_of(v, kGeopotentialUnit).fits;
     });
     if (terrain) {
+      terrain_is = names::kSurfaceGeopotential;
       terrain_unit = unit_of(*terrain, kGeopotentialUnit);
       terrain_unit.factor /= constants::kStandardGravity_m_per_s2;
     }
@@ -239,6 +241,10 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   model.interfaces_m = cf->vertical.interfaces_m;
   model.height_range_m = cf->vertical.height_range_m;
   model.has_land_mask = cf->land;
+  for (const auto& [variable, quantity] :
+       {std::pair{cf->terrain, cf->terrain_is}, {cf->land, names::kLandFraction}})
+    if (std::string note = variable ? untested(file, quantity, *variable) : ""; !note.empty())
+      model.assumptions.push_back(std::move(note));
   if (cf->terrain || cf->land) model.ground = [cf](std::size_t time) { return cf->ground(time); };
   return model;
 }

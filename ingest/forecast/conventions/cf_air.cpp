@@ -21,11 +21,21 @@ void scale(std::vector<float>& values, const UnitOf& unit) {
 }  // namespace
 
 bool is_deviation(const FieldReader& reader, const FileVariable& variable, int z) {
-  const int top = int(reader.file->size(z)) - 1;
-  for (const int level : {0, top})
-    for (const float value : reader.levels(variable, z, false, 0, level, 1))
-      if (value <= 0) return true;
-  return false;
+  constexpr float kLeast_Pa = 1000;
+  const float to_Pa = float(unit_of(variable, kPressure).factor);
+  float least_of_highest = 0, highest = -INFINITY, least = INFINITY;
+  for (const int level : {0, int(reader.file->size(z)) - 1}) {
+    float low = INFINITY, high = -INFINITY;
+    for (const float value : reader.levels(variable, z, false, 0, level, 1)) {
+      low = std::min(low, value * to_Pa);
+      high = std::max(high, value * to_Pa);
+    }
+    least = std::min(least, low);
+    if (high <= highest) continue;
+    highest = high;
+    least_of_highest = low;
+  }
+  return least_of_highest <= 0 || (least <= 0 && highest < kLeast_Pa);
 }
 
 CfAir::CfAir(std::shared_ptr<const FieldReader> reader, int z) : reader_(std::move(reader)), z_(z) {

@@ -52,7 +52,9 @@ class CfAir {
   std::optional<std::vector<float>> standard_Pa_;  // of heights, where no pressure is known
 };
 
-// Is a field under the name of pressure a deviation from a base state? It falls to 0 or below.
+// Is a field under the name of pressure a deviation from a base state? It falls to 0 or below where
+// its levels' pressure is highest, or anywhere without ever reaching 10 hPa. (A model's top may be
+// 0 by packing.)
 bool is_deviation(const FieldReader& reader, const FileVariable& variable, int z);
 
 }  // namespace nepho::forecast

@@ -289,6 +289,13 @@ void ModelForecast::say(const WaterStatistics& s) {
   facts.push_back("Water: " + names + ".");
   if (const std::string wrote = model_of_file(*model_.file); !wrote.empty())
     facts.push_back("The names are those of " + wrote + ".");
+  for (const auto& [variable, quantity] : {std::pair{model_.cloud_fraction, names::kCloudFraction},
+                                           {model_.droplet_number, names::kDropletNumber},
+                                           {model_.droplet_radius, names::kDropletRadius},
+                                           {model_.ice_radius, names::kIceRadius}})
+    if (std::string note = variable ? untested(*model_.file, quantity, *variable) : "";
+        !note.empty())
+      model_.assumptions.push_back(std::move(note));
   for (SaidOfSizes& said : said_of_sizes(model_, s))
     model_.assumptions.push_back(std::move(said.how));
   facts.push_back(text("Cloud water of a column: up to %.3g kg/m2, mean %.3g kg/m2.",

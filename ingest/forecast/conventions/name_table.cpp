@@ -3,7 +3,6 @@
 // quantities; ICON's and COSMO's GRIB tables; ECMWF's parameter database.
 #include "forecast/conventions/name_table.h"
 
-#include <algorithm>
 #include <array>
 
 #include "forecast/conventions/names.h"
@@ -168,7 +167,7 @@ constexpr NameRow kTable[] = {
     only_there({kOther, "PALM", "q", "", kMade}),      // all water
     // Temperature
     only_there({kLiquidPotentialTemperature, "UCLA-LES", "t", "", kMade}),
-    {kTemperature, kAny, "", "air_temperature", kMade},
+    {kTemperature, kAny, "", "air_temperature", kReal},
     {kTemperature, kAny, "", "air_temperature_at_full_level_center", kReal},
     {kTemperature, kAny, "t", "", kReal},
     {kTemperature, kAny, "ta", "", kReal},
@@ -237,7 +236,7 @@ constexpr NameRow kTable[] = {
     {kVapourMixingRatio, "WRF", "qvapor", "", kReal},
     {kVapourMixingRatio, kAny, "mixr", ""},
     {kVapourMixingRatio, kAny, "rv", ""},
-    {kRelativeHumidity, kAny, "", "relative_humidity"},
+    {kRelativeHumidity, kAny, "", "relative_humidity", kReal},
     {kRelativeHumidity, kAny, "r", "", kReal},
     {kRelativeHumidity, kAny, "rh", "", kReal},
     {kRelativeHumidity, kAny, "hur", ""},
@@ -292,7 +291,7 @@ constexpr NameRow kTable[] = {
     {kFullLevelHeight, "COSMO", "hfl", ""},
     {kFullLevelHeight, kAny, "z3d", ""},
     {kFullLevelHeight, kAny, "height_full", ""},
-    {kGeopotentialHeight, kAny, "", "geopotential_height"},
+    {kGeopotentialHeight, kAny, "", "geopotential_height", kReal},
     {kGeopotentialHeight, kAny, "gh", "", kReal},
     {kGeopotentialHeight, "CMIP", "zg", ""},
     {kGeopotentialHeight, "CAM", "z3", ""},
@@ -362,42 +361,6 @@ constexpr std::array<const char*, kQuantities> kWords = {"cloud_water",
                                                          "longitude",
                                                          "other"};
 
-// One way to know a model by: a word in any of the file's usual attributes of origin, or variables
-// and dimensions that no other has together.
-struct Mark {
-  const char* model;
-  const char* word;
-  std::array<const char*, 3> holds = {};  // variables or dimensions, all of them
-};
-constexpr Mark kMarks[] = {{"WRF", "WRF"},
-                           {"WRF", nullptr, {"PHB", "bottom_top_stag"}},
-                           {"PALM", "PALM"},
-                           {"PALM", nullptr, {"zu_3d"}},
-                           {"MicroHH", "MicroHH"},
-                           {"UCLA-LES", "UCLA"},
-                           {"UCLA-LES", nullptr, {"dn0", "zt", "xt"}},
-                           {"DALES", "DALES"},
-                           {"DALES", nullptr, {"thl", "zt", "xt"}},
-                           {"DALES", nullptr, {"ql", "zt", "xt"}},
-                           {"SAM", nullptr, {"TABS"}},
-                           {"CM1", "CM1"},
-                           {"CM1", nullptr, {"prs", "th", "zh"}},
-                           {"UM", "Unified Model"},
-                           {"UM", nullptr, {"mr_lsliq"}},
-                           {"ICON", "ICON"},
-                           {"ICON", nullptr, {"z_ifc", "z_mc"}},
-                           {"AROME", "AROME"},
-                           {"AROME", "HARMONIE"},
-                           {"COSMO", "COSMO"},
-                           {"GFS", "GFS"},
-                           {"IFS", "ECMWF"},
-                           {"IFS", "Integrated Forecast"}};
-
-bool holds(const DataFile& file, const std::string& name) {
-  return file.find(name) || std::ranges::find(file.dimensions(), name, &FileDimension::name) !=
-                                file.dimensions().end();
-}
-
 }  // namespace
 
 std::span<const NameRow> name_table() {
@@ -406,20 +369,6 @@ std::span<const NameRow> name_table() {
 
 const char* word_of(Quantity quantity) {
   return kWords[std::size_t(quantity)];
-}
-
-std::string model_of_file(const DataFile& file) {
-  std::string origin;
-  for (const char* attribute : {"TITLE", "title", "source", "model", "Model", "institution"})
-    origin += file.text(attribute) + "\n";
-  if (!file.text("CM1 version").empty()) return "CM1";
-  for (const Mark& mark : kMarks) {
-    if (mark.word ? origin.find(mark.word) != std::string::npos
-                  : std::ranges::all_of(
-                        mark.holds, [&](const char* name) { return !name || holds(file, name); }))
-      return mark.model;
-  }
-  return "";
 }
 
 }  // namespace nepho::forecast
