@@ -18,6 +18,7 @@ struct OpenRequest {
   std::function<std::shared_ptr<const DataFile>(const std::string& path)> open_file;
   // Draw what is out of every cloud's range: more than 20 g/m3 of water, or 1 /m of extinction.
   bool force = false;
+  bool geoid = false;            // heights over the sea stand on EGM96 rather than on the ellipsoid
   std::string grid_file;         // of cells that are no rows and columns; "": the data's own
   std::optional<Region> region;  // all that is read; the whole file without one
 };
