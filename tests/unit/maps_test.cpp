@@ -136,8 +136,8 @@ TEST(Geoid, Egm96AtItsOwnTestPoints) {
   double worst = 0;
   for (const auto& p : points)
     worst = std::max(worst, std::abs(geoid({p.lat, p.lon}) - p.height_m));
-  report_accuracy("grids", "EGM96 at its own test points, by a grid of 15 minutes", worst, 1, "m");
-  EXPECT_LT(worst, 1);
+  report_accuracy("grids", "EGM96 at its own test points, by a grid of 15 minutes", worst, 0.5, "m");
+  EXPECT_LT(worst, 0.5);
 }
 
 }  // namespace
