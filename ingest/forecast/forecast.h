@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bricks/data_facts.h"
 #include "bricks/volume_info.h"
 
 namespace nepho::forecast {
@@ -46,6 +47,9 @@ struct ForecastColumns {
   std::vector<float> interface_m;           // [cell * (nz + 1) + k], rising; over the ellipsoid
   std::vector<float> extinction_per_m;      // [cell * nz + k]; liquid and ice; >= 0, finite
   std::vector<float> ice_extinction_per_m;  // the ice part; empty where the data have no ice
+  // For `info`: water of each column, [cell] or empty; cloud apart from rain, snow and graupel.
+  std::vector<float> liquid_kg_per_m2, ice_kg_per_m2, precipitation_kg_per_m2;
+  std::vector<DataVariable> variables;  // what was read of this time
 };
 
 // The model's own ground, [j * nx + i]; empty vectors where the file has none.
@@ -76,8 +80,12 @@ class Forecast {
   virtual double thinnest_layer_m() const = 0;
   // Mean effective radius of the liquid part (m), weighted by extinction: the volume's phase.
   virtual double liquid_radius_m() const = 0;
+  // Not so where all water is missing at all times.
+  virtual bool has_data() const { return true; }
   virtual std::vector<std::string> assumptions() const = 0;
   virtual std::vector<std::string> facts() const = 0;
+  // For `info`: model, grid, levels and optics, as far as they were found.
+  virtual std::vector<DataFacts::Recognised> recognised() const { return {}; }
   // What has been read until now, of all variables of all files.
   virtual std::vector<VariableBytes> bytes_read() const { return {}; }
 };

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "forecast/bricks/box_around.h"
+#include "forecast/bricks/column_facts.h"
 #include "forecast/bricks/grid_search.h"
 #include "forecast/bricks/hat_remap.h"
 #include "forecast/bricks/layout.h"
@@ -57,12 +58,9 @@ class Moment {
   double point_extinction_per_m(const Ellipsoid& body, const glm::dvec3& ecef_m) const {
     if (box_) return remap_.interpolated(ecef_m, HatRemap::Part::kTotal);
     const GeodeticPoint point = geodetic_point(body, ecef_m);
-    const auto [at, off_cells] = search_.find({point.latitude_deg, point.longitude_deg});
-    if (off_cells > 0) return 0;
-    const auto index = [](double x, int n) { return std::size_t(std::min(int(x), n - 1)); };
-    const std::size_t nz = std::size_t(columns_.nz);
-    const std::size_t cell =
-        index(at.y, columns_.ny) * std::size_t(columns_.nx) + index(at.x, columns_.nx);
+    const std::optional<std::size_t> found = cell_at(point);
+    if (!found) return 0;
+    const std::size_t nz = std::size_t(columns_.nz), cell = *found;
     const float* interface_m = &columns_.interface_m[cell * (nz + 1)];
     if (point.height_m < double(interface_m[0]) - options_.extend_below_m) return 0;
     const float* above =
@@ -71,12 +69,37 @@ class Moment {
     return double(columns_.extinction_per_m[cell * nz + std::size_t(above - interface_m - 1)]);
   }
 
+  // The column of the model's cell, with the fog below its ground, as bricks have it.
+  OwnColumn own_column(const Ellipsoid& body, const glm::dvec3& ecef_m) const {
+    OwnColumn column;
+    const std::optional<std::size_t> cell = cell_at(geodetic_point(body, ecef_m));
+    if (!cell) return column;
+    const std::size_t nz = std::size_t(columns_.nz);
+    const float* z = &columns_.interface_m[*cell * (nz + 1)];
+    for (std::size_t k = 0; k < nz; ++k) {
+      const double low_m = double(z[k]) - (k == 0 ? options_.extend_below_m : 0);
+      const double depth =
+          double(columns_.extinction_per_m[*cell * nz + k]) * (double(z[k + 1]) - low_m);
+      column.optical_depth += depth;
+      column.mean_height_m += depth * 0.5 * (low_m + double(z[k + 1]));
+    }
+    if (column.optical_depth > 0) column.mean_height_m /= column.optical_depth;
+    return column;
+  }
+
   std::uint64_t bytes() const {
     return sizeof *this + remap_.bytes() + total_.bytes() + (ice_ ? ice_->bytes() : 0) +
            (columns_.interface_m.capacity() + columns_.extinction_per_m.capacity()) * sizeof(float);
   }
 
  private:
+  std::optional<std::size_t> cell_at(const GeodeticPoint& point) const {
+    const auto [at, off_cells] = search_.find({point.latitude_deg, point.longitude_deg});
+    if (off_cells > 0) return {};
+    const auto index = [](double x, int n) { return std::size_t(std::min(int(x), n - 1)); };
+    return index(at.y, columns_.ny) * std::size_t(columns_.nx) + index(at.x, columns_.nx);
+  }
+
   SparsePyramid pyramid(const Layout& layout, HatRemap::Part part) const {
     SparsePyramid::Field field;
     field.nodes = box_ ? box_->nodes(remap_, part) : remap_.nodes(part);
@@ -143,6 +166,26 @@ class NetcdfSource final : public BrickSource {
       return Status::kOk;
     });
   }
+  Status own_column(const glm::dvec3& ecef_m, double time_s,
+                    OwnColumn& column) const noexcept override {
+    if (options_.box) return Status::kUnsupported;  // its columns do not stand upright
+    return answered(time_s, [&](const Moment& now) {
+      column = now.own_column(layout_.chart->body(), ecef_m);
+      return Status::kOk;
+    });
+  }
+  // No bricks are made for it.
+  Status data_facts(double time_s, DataFacts& facts) const noexcept override {
+    return answered_at(time_s, [&](std::size_t time) {
+      const std::shared_ptr<const Moment> kept = kept_moment(time);
+      const double below_m = layout_.extend_below_m;
+      const auto grid = forecast_->grid(time);
+      facts = kept ? column_facts(kept->columns(), *grid, below_m)
+                   : column_facts(forecast_->columns(time), *grid, below_m);
+      facts.recognised = forecast_->recognised();
+      return Status::kOk;
+    });
+  }
   std::size_t last_error(char* buffer, std::size_t size) const noexcept override {
     return copy_last_error(buffer, size);
   }
@@ -150,13 +193,17 @@ class NetcdfSource final : public BrickSource {
  private:
   template <class Answer>
   Status answered(double time_s, Answer&& answer) const noexcept {
+    return answered_at(time_s, [&](std::size_t time) { return answer(*moment(time)); });
+  }
+  template <class Answer>
+  Status answered_at(double time_s, Answer&& answer) const noexcept {
     try {
       const auto at = std::ranges::find(info_.times_s, time_s);
       if (at == info_.times_s.end()) {
         set_last_error(to_string(Status::kNoSuchTime));
         return Status::kNoSuchTime;
       }
-      return answer(*moment(std::size_t(at - info_.times_s.begin())));
+      return answer(std::size_t(at - info_.times_s.begin()));
     } catch (const std::exception& e) {
       set_last_error(e.what());
     } catch (...) {
@@ -165,6 +212,11 @@ class NetcdfSource final : public BrickSource {
     return Status::kReadFailed;
   }
 
+  std::shared_ptr<const Moment> kept_moment(std::size_t time) const {
+    const std::lock_guard lock(mutex_);
+    const auto at = std::ranges::find(moments_, time, [](const auto& kept) { return kept.first; });
+    return at == moments_.end() ? nullptr : at->second;
+  }
   std::shared_ptr<const Moment> moment(std::size_t time) const {
     const std::lock_guard lock(mutex_);
     const auto at = std::ranges::find(moments_, time, [](const auto& kept) { return kept.first; });

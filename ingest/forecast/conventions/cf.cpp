@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 #include <optional>
 
@@ -48,6 +49,7 @@ struct CfFile {
   void choose_pressure(Model& model);
   void make_standard_air();
   std::vector<std::int64_t> times_ns(Model& model) const;
+  void say_air(Model& model) const;
 };
 
 void scale(std::vector<float>& values, const UnitOf& unit) {
@@ -209,12 +211,40 @@ std::vector<std::int64_t> CfFile::times_ns(Model& model) const {
     const auto at = std::ranges::find_if(file->variables(), is_axis);
     axis = at == file->variables().end() ? nullptr : &*at;
   }
-  if (axis) return read_times_ns(*file, *axis);
+  if (axis) {
+    FileTimes times = read_times(*file, *axis);
+    std::ranges::move(times.assumptions, std::back_inserter(model.assumptions));
+    return std::move(times.utc_ns);
+  }
   if (roles.time >= 0 && file->size(roles.time) > 1)
     throw Error({"the file does not say which times it holds",
                  file->path() + " [" + file->name(roles.time) + "]",
                  "a coordinate with units such as \"hours since 2000-01-01\"", "none", ""});
   return no_time();
+}
+
+// By the attributes that files have for it; models rarely sign.
+std::string model_name(const DataFile& file) {
+  std::string name;
+  for (const char* attribute : {"source", "title", "institution", "Conventions"})
+    if (const std::string text = file.text(attribute); !text.empty())
+      name += (name.empty() ? "" : "; ") + text.substr(0, text.find('\n')).substr(0, 80);
+  return name.empty() ? "not said" : name;
+}
+
+void CfFile::say_air(Model& model) const {
+  std::string air = vertical.pressure                     ? "pressure " + vertical.pressure->name
+                    : !vertical.level_pressure_Pa.empty() ? "pressure of the levels"
+                    : vertical.pressure_Pa                ? "pressure by formula"
+                                                          : "";
+  const auto add = [&](const FileVariable* variable, const char* what) {
+    if (variable) air += (air.empty() ? "" : ", ") + (what + variable->name);
+  };
+  add(temperature, "temperature ");
+  add(vapour, "humidity ");
+  add(terrain, "ground ");
+  add(land, "land ");
+  if (!air.empty()) model.recognised.push_back({"air and ground", air});
 }
 
 // The variable whose dimensions stand for all: the first water that has any grid.
@@ -255,8 +285,9 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   cf->grid = cf->roles.cells >= 0 ? unstructured_grid(file, grid_file, first, cf->roles.cells,
                                                       model.assumptions, how)
                                   : cf_grid(file, cf->roles, reader, first, model.assumptions, how);
-  model.facts.push_back("Grid: " + std::to_string(cf->grid->nx()) + " x " +
-                        std::to_string(cf->grid->ny()) + " cells, " + how + ".");
+  model.recognised = {{"model", model_name(file)},
+                      {"grid", std::to_string(cf->grid->nx()) + " x " +
+                                   std::to_string(cf->grid->ny()) + " cells, " + how}};
   reader.nx = cf->grid->nx();
   reader.ny = cf->grid->ny();
   if (region) cf->restrict_to(*region, model);
@@ -283,6 +314,10 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   };
   say(model.assumptions, cf->vertical.assumptions);
   say(model.facts, cf->vertical.facts);
+  model.recognised.push_back(
+      {"levels", std::to_string(model.nz) + " levels, " + cf->vertical.how +
+                     (cf->vertical.from_top ? ", from the top down" : ", from the ground up")});
+  cf->say_air(model);
   model.heights_change = cf->vertical.heights_change;
   model.heights_on_ellipsoid = cf->vertical.on_ellipsoid;
   model.field = [cf](const FileVariable& v, std::size_t time) { return cf->field(v, time); };
@@ -305,7 +340,7 @@ std::unique_ptr<Forecast> open_cf(std::shared_ptr<const DataFile> file,
   cf->file = std::move(file);
   std::shared_ptr<const DataFile> grid_file;
   if (!request.grid_file.empty()) grid_file = request.open_file(request.grid_file);
-  return make_forecast(model_of(cf, request.region, grid_file.get()), request.force);
+  return make_forecast(model_of(cf, request.region, grid_file.get()), request);
 }
 
 }  // namespace

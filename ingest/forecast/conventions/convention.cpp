@@ -30,7 +30,9 @@ std::unique_ptr<Forecast> open_forecast(const OpenRequest& request) {
   if (request.files.empty())
     throw Error({"a forecast without files", "", "at least one .nc file", "none", ""});
   std::vector<std::unique_ptr<Forecast>> parts;
-  for (const std::string& path : request.files) parts.push_back(open_file(path, request));
+  OpenRequest part = request;
+  part.is_part = request.files.size() > 1;
+  for (const std::string& path : request.files) parts.push_back(open_file(path, part));
   return join_forecasts(std::move(parts));
 }
 

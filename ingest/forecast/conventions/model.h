@@ -51,10 +51,13 @@ struct Model {
   bool heights_on_ellipsoid = false;  // rather than over the sea
   std::function<ForecastGround(std::size_t time)> ground;
   std::vector<std::string> assumptions, facts;
+  std::vector<DataFacts::Recognised> recognised;  // for `info`
 };
 
 // Reads the first time that holds water data. Throws Error where none does, and on water out of
-// every cloud's range unless forced.
-std::unique_ptr<Forecast> make_forecast(Model model, bool force);
+// every cloud's range unless `request` forces it. A part of several files may be without water
+// data.
+struct OpenRequest;
+std::unique_ptr<Forecast> make_forecast(Model model, const OpenRequest& request);
 
 }  // namespace nepho::forecast

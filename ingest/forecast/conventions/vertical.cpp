@@ -41,7 +41,6 @@ Vertical find_vertical(const VerticalRequest& request) {
       if (file.size(request.z) < 2 && !vertical.has_interfaces)
         throw Error({"one level has no thickness", file.path(), "at least two levels",
                      file.name(request.z) + " of size 1", ""});
-      vertical.facts.push_back("Heights: " + vertical.how + ".");
       return vertical;
     }
   const FileVariable* axis = file.find(file.name(request.z));

@@ -61,8 +61,8 @@ double WaterStatistics::radius_m() const {
 }
 
 void add_water(const WaterVariable& water, std::span<const float> values, const Air& air,
-               const CloudSetting& setting, ForecastColumns& columns,
-               std::vector<float>& path_kg_per_m2, WaterStatistics& statistics) {
+               const CloudSetting& setting, ForecastColumns& columns, const WaterPaths& paths,
+               WaterStatistics& statistics) {
   const std::size_t cells = std::size_t(columns.nx) * std::size_t(columns.ny);
   const std::size_t nz = std::size_t(columns.nz);
   for (std::size_t k = 0; k < nz; ++k)
@@ -99,7 +99,8 @@ void add_water(const WaterVariable& water, std::span<const float> values, const 
       columns.extinction_per_m[out] += float(per_m);
       if (is_ice(species)) columns.ice_extinction_per_m[out] += float(per_m);
       const float* interface_m = &columns.interface_m[n * (nz + 1) + k];
-      path_kg_per_m2[n] += float(content * double(interface_m[1] - interface_m[0]));
+      (is_ice(species) ? paths.ice_kg_per_m2 : paths.liquid_kg_per_m2)[n] +=
+          float(content * double(interface_m[1] - interface_m[0]));
       if (content > statistics.highest_content_kg_per_m3) {
         statistics.highest_content_kg_per_m3 = content;
         statistics.highest_variable = water.variable->name;
