@@ -309,8 +309,8 @@ VolumeSpec data_volume(const std::string& file) {
     throw Error({"a raster is no cloud field", file, "NetCDF, GRIB or VDB", "TIFF", ""});
   const std::string ending = ending_of(file);
   if (ending.empty())
-    throw Error({"unknown kind of file", file, "NetCDF or GRIB, or a name with an ending, such as .vdb",
-                 "none", ""});
+    throw Error({"unknown kind of file", file,
+                 "NetCDF or GRIB, or a name with an ending, such as .vdb", "none", ""});
   volume.source = ending.substr(1);
   return volume;
 }
@@ -323,10 +323,13 @@ void set_time(Scene& scene, const std::optional<std::string>& value) {
     if (any && volume.files.empty()) continue;
     volume.time_s.reset();
     volume.utc_ns.reset();
+    volume.time_choice.clear();
     if (is_date(*value))
       volume.utc_ns = utc_ns_value(*value, "--time");
+    else if (value->ends_with('s') && value->find_first_not_of("+-.0123456789es") == value->npos)
+      volume.time_s = number_value("--time", value->substr(0, value->size() - 1));
     else
-      volume.time_s = number_value("--time", *value);
+      volume.time_choice = *value;
     volume.where = "--time";
   }
 }
