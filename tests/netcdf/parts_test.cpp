@@ -98,20 +98,6 @@ TEST(Time, AxesAgainstDates) {
   EXPECT_EQ(parse_date_ns("yesterday"), std::nullopt);
 }
 
-TEST(Time, OtherCalendarsAreRefused) {
-  for (const char* calendar : {"360_day", "julian", "none"}) {
-    const std::string path = folder() / "calendar.nc";
-    {
-      NcWriter nc(path);
-      nc.dimension("time", 1);
-      nc.variable("time", NC_DOUBLE, {"time"}, {1},
-                  {{"units", "days since 2000-01-01"}, {"calendar", std::string(calendar)}});
-    }
-    const netcdf::NcFile file(path, {});
-    EXPECT_THROW(read_times_ns(file, *file.find("time")), Error) << calendar;
-  }
-}
-
 // What is missing is told by the packed number, before scale and offset.
 TEST(Packing, MissingValues) {
   const std::string path = folder() / "packing.nc";

@@ -88,6 +88,7 @@ Json volumes_and_picture(const SourceHost& host, const Scene& scene, bool check)
 
 // After all has been told, as one error: the exit status is for programs that check.
 void refuse_broken_promises(const Json& out) {
+  std::fflush(stdout);
   for (const Json& volume : out["volumes"]) {
     if (volume["check"]["kept"].get<bool>()) continue;
     const auto percent = [&](const char* key) {
@@ -101,7 +102,7 @@ void refuse_broken_promises(const Json& out) {
          "total optical depth within " + percent("total_optical_depth_promised") +
              ", columns within " + percent("column_rms_promised") + " rms",
          percent("total_optical_depth_difference") + " and " + percent("column_rms_difference"),
-         "finer bricks hold more: max_level, or a smaller resolution"});
+         "finer bricks hold more: max_level, or a finer resolution of the volume"});
   }
 }
 

@@ -19,11 +19,11 @@
 namespace nepho {
 namespace {
 
-constexpr std::size_t kEnoughTowers = 1024;     // from there on, towers are drawn
-constexpr int kTowers = 128, kColumnsEach = 4;  // that are compared
-constexpr int kStrata = 32;                     // a side of the square under a hat
-constexpr int kPointsEach = 8;                  // along a line, in each cell
-constexpr std::size_t kMostBricks = 4096;       // of the level that is summed up
+constexpr std::size_t kEnoughTowers = 1024;         // from there on, towers are drawn
+constexpr std::size_t kTowers = 96, kColumns = 96;  // that are compared
+constexpr int kStrata = 48;                         // a side of the square under a hat
+constexpr int kPointsEach = 8;                      // along a line, in each cell
+constexpr std::size_t kMostBricks = 4096;           // of the level that is summed up
 
 // All nodes of one level above each other, those with cloud.
 struct Tower {
@@ -124,9 +124,9 @@ std::vector<Tower> Checker::draw_towers() {
     towers = std::move(next);
   }
   std::ranges::shuffle(towers, random_);
-  if (towers.size() > std::size_t(kTowers)) {
-    for (Tower& tower : towers) tower.weight *= double(towers.size()) / kTowers;
-    towers.resize(std::size_t(kTowers));
+  if (towers.size() > kTowers) {
+    for (Tower& tower : towers) tower.weight *= double(towers.size()) / double(kTowers);
+    towers.resize(kTowers);
   }
   for (; level < info_.lattice.max_level(); ++level) {
     std::vector<Tower> next;
@@ -220,15 +220,19 @@ BrickCheck Checker::run() {
   };
   std::vector<Sums> towers;
   BrickCheck check;
-  for (const Tower& tower : draw_towers()) {
+  const std::vector<Tower> drawn = draw_towers();
+  const std::size_t each = (kColumns + drawn.size()) / std::max<std::size_t>(drawn.size(), 1);
+  for (const Tower& tower : drawn) {
     std::map<std::uint32_t, std::vector<double>> bricks;
     for (const NodeKey key : tower.nodes) bricks[key.k()] = brick_values(source_, key, time_s_);
     const NodeKey first = tower.nodes.front();
     Sums sums;
-    for (int c = 0; c < kColumnsEach; ++c) {
-      const Index3 at = {kBrickCells * first.i() + std::uint32_t(number() * kBrickCells),
-                         kBrickCells * first.j() + std::uint32_t(number() * kBrickCells), 0};
-      if (at[0] == 0 || at[1] == 0) continue;  // hats that go on in another root
+    for (std::size_t c = 0; c < each; ++c) {
+      const auto offset = [&] { return std::uint32_t(number() * kBrickCells); };
+      const std::uint32_t i = kBrickCells * first.i() + offset();
+      const std::uint32_t j = kBrickCells * first.j() + offset();
+      const Index3 at = {i, j, 0};
+      if (i == 0 || j == 0) continue;  // hats that go on in another root
       double area = 0;
       const Compared depth = compare(bricks, first.root(), at, area);
       const double off[2] = {depth.bricks - depth.own[0], depth.bricks - depth.own[1]};

@@ -31,32 +31,45 @@ double height_m(const VolumeInfo& info, int root, const glm::dvec3& q) {
   return at.z;
 }
 
+// The lattice's axis that stands most upright: the third, but in free boxes.
+std::size_t upright_axis(const VolumeInfo& info) {
+  const auto* box = dynamic_cast<const BoxChart*>(info.chart.get());
+  if (!box || info.on_planet) return 2;
+  std::size_t best = 2;
+  for (const std::size_t a : {std::size_t{0}, std::size_t{1}})
+    if (std::abs(box->edges_m()[int(a)].z) > std::abs(box->edges_m()[int(best)].z)) best = a;
+  return best;
+}
+
 // Samples along the columns of a node, each once; half at the ends of the lattice.
-void add_columns(const VolumeInfo& info, NodeKey key, const std::vector<double>& values,
-                 Columns& columns) {
+void add_columns(const VolumeInfo& info, std::size_t up, NodeKey key,
+                 const std::vector<double>& values, Columns& columns) {
   const Index3& cells = info.lattice.cells(key.level());
+  const std::size_t u = (up + 1) % 3, v = (up + 2) % 3;
+  const auto at_q = [&](Index3 g, double layer) {
+    glm::dvec3 q{double(g[0]) / cells[0], double(g[1]) / cells[1], double(g[2]) / cells[2]};
+    q[int(up)] = layer / cells[up];
+    return q;
+  };
   for (std::uint32_t j = 0; j < kBrickCells; ++j)
     for (std::uint32_t i = 0; i < kBrickCells; ++i) {
       ColumnOfBricks* column = nullptr;
       for (std::uint32_t k = 0; k <= kBrickCells; ++k) {
-        const double per_m = values[brick_offset(i, j, k)];
-        const std::uint32_t at = kBrickCells * key.k() + k;
-        if (!(per_m > 0) || (k == kBrickCells && at < cells[2])) continue;
-        const Index3 g = {kBrickCells * key.i() + i, kBrickCells * key.j() + j, at};
-        if (!column) column = &columns[{key.root(), g[0], g[1]}];
-        const auto point = [&](double layer) {
-          return info.chart->ecef_m(
-              {key.root(), {double(g[0]) / cells[0], double(g[1]) / cells[1], layer / cells[2]}});
-        };
-        const double low = std::max(at - 0.5, 0.0), high = std::min(at + 0.5, double(cells[2]));
-        column->depth += per_m * glm::length(point(high) - point(low));
+        Index3 s{};
+        s[u] = i, s[v] = j, s[up] = k;
+        const double per_m = values[brick_offset(s[0], s[1], s[2])];
+        const Index3 g = Lattice::global_sample(key, s);
+        if (!(per_m > 0) || (k == kBrickCells && g[up] < cells[up])) continue;
+        if (!column) column = &columns[{key.root(), g[u], g[v]}];
+        const double low = std::max(g[up] - 0.5, 0.0),
+                     high = std::min(g[up] + 0.5, double(cells[up]));
+        column->depth += per_m * glm::length(info.chart->ecef_m({key.root(), at_q(g, high)}) -
+                                             info.chart->ecef_m({key.root(), at_q(g, low)}));
         if (per_m < DataFacts::kCloud_per_m) continue;
-        const auto layer_m = [&](double layer) {
-          return height_m(info, key.root(),
-                          {double(g[0]) / cells[0], double(g[1]) / cells[1], layer / cells[2]});
-        };
-        column->base_m = std::min(column->base_m, layer_m(low));
-        column->top_m = std::max(column->top_m, layer_m(high));
+        const double a_m = height_m(info, key.root(), at_q(g, low)),
+                     b_m = height_m(info, key.root(), at_q(g, high));
+        column->base_m = std::min({column->base_m, a_m, b_m});
+        column->top_m = std::max({column->top_m, a_m, b_m});
       }
     }
 }
@@ -119,11 +132,13 @@ DataFacts brick_facts(const BrickSource& source, double time_s) {
   DataFacts facts;
   if (nodes.empty()) return facts;
   Columns columns;
+  const std::size_t up = upright_axis(info);
   for (const NodeKey key : nodes)
-    add_columns(info, key, brick_values(source, key, time_s), columns);
+    add_columns(info, up, key, brick_values(source, key, time_s), columns);
   const int level = nodes.front().level();
   facts.recognised = {{"columns from", "bricks of level " + std::to_string(level) + " of " +
                                            std::to_string(info.lattice.max_level())}};
+  const bool shell = info.chart->kind() == ChartKind::kShell;
   double cloudy_m2 = 0, depth = 0, base_m = 0, top_m = 0;
   facts.optical_depth.max = 0;
   for (const auto& [where, column] : columns) {
@@ -134,8 +149,9 @@ DataFacts brick_facts(const BrickSource& source, double time_s) {
     }
     if (column.depth < DataFacts::kCloudyDepth || !(column.top_m > column.base_m)) continue;
     const auto& [root, i, j] = where;
+    // Columns of a box are alike; of a shell, sr.
     const double area_m2 =
-        info.chart->hat_horizontal({root, i, j}, info.lattice.cells(level));  // or sr
+        shell ? info.chart->hat_horizontal({root, i, j}, info.lattice.cells(level)) : 1;
     cloudy_m2 += area_m2;
     depth += area_m2 * column.depth;
     base_m += area_m2 * column.base_m;
@@ -146,7 +162,7 @@ DataFacts brick_facts(const BrickSource& source, double time_s) {
     facts.optical_depth.mean = depth / cloudy_m2;
     facts.mean_base_m = base_m / cloudy_m2, facts.mean_top_m = top_m / cloudy_m2;
   }
-  if (info.chart->kind() == ChartKind::kShell) facts.cover = cloudy_m2 / (4 * 3.14159265358979324);
+  if (shell) facts.cover = cloudy_m2 / (4 * 3.14159265358979324);
   return facts;
 }
 

@@ -19,7 +19,8 @@ std::vector<NodeKey> cloudy_nodes(const BrickSource& source, double time_s, std:
 double total_extinction_m2(const BrickSource& source, double time_s, std::size_t most_bricks);
 
 // What can be said of a source without facts of its own, from the bricks of such a level: optical
-// depths along the chart's third axis (the mean is that of cloudy columns), cover of a whole
+// depths along the chart's axis that stands
+// upright (the mean is that of cloudy columns), cover of a whole
 // planet, base and top over the ellipsoid, or over the frame of a free box. `recognised` names the
 // level.
 DataFacts brick_facts(const BrickSource& source, double time_s);

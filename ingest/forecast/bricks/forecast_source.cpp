@@ -242,7 +242,7 @@ class NetcdfSource final : public BrickSource {
   }
 
   void describe(const std::string& name, const Moment& first);
-  void state_facts(const Moment& first);
+  void state_facts();
 
   SourceOptions options_;
   std::shared_ptr<const Forecast> forecast_;
@@ -287,7 +287,7 @@ void NetcdfSource::describe(const std::string& name, const Moment& first) {
   if (ground.map && !ground.has_water)
     info_.assumptions.push_back(
         "The data have no land mask: sea is where the ground is at or below 0.5 m.");
-  state_facts(first);
+  state_facts();
 }
 
 std::optional<std::string> reading_fact(const Forecast& forecast) {
@@ -300,28 +300,10 @@ std::optional<std::string> reading_fact(const Forecast& forecast) {
   return text("Read: %.3g MB; all values of the data are %.3g MB.", read / 1e6, held / 1e6);
 }
 
-void NetcdfSource::state_facts(const Moment& first) {
+void NetcdfSource::state_facts() {
   if (const auto reading = reading_fact(*forecast_)) info_.facts.push_back(*reading);
   info_.facts.push_back(text("Finest voxels are %.4g km wide (at most) and %.4g m high.",
                              layout_.voxel_width_m / 1000, layout_.voxel_height_m));
-  const glm::dvec2 range_m = forecast_->height_range_m();
-  info_.facts.push_back(
-      text("The data reach from %.0f m to %.1f km.", range_m.x, range_m.y / 1000));
-  // Cloud in the topmost layer is cut, whatever the model had above it.
-  const ForecastColumns& columns = first.columns();
-  const std::size_t nz = std::size_t(columns.nz);
-  std::size_t cut = 0, cloudy = 0;
-  for (std::size_t top = nz; top <= columns.extinction_per_m.size(); top += nz) {
-    const auto begin = columns.extinction_per_m.begin() + std::ptrdiff_t(top);
-    const auto is_cloud = [](float value) { return value > 1e-5f; };
-    cut += is_cloud(begin[-1]);
-    cloudy += std::any_of(begin - std::ptrdiff_t(nz), begin, is_cloud);
-  }
-  if (cut > 0)
-    info_.facts.push_back(
-        text("Clouds are cut off at the top of the data, at %.1f km, in %.0f %% of "
-             "the cloudy columns.",
-             range_m.y / 1000, 100.0 * double(cut) / double(cloudy)));
   if (options_.layers == Layers::kSmooth)
     info_.assumptions.push_back(
         "Within the model's layers clouds are smoothed, each with its optical depth; the file's "

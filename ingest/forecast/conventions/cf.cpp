@@ -1,6 +1,7 @@
 // CF files and what is near to them: coordinates by units and attributes, grids of latitude and
 // longitude or of a map, levels of height or pressure. CF Conventions 1.11.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
@@ -227,7 +228,8 @@ std::vector<std::int64_t> CfFile::times_ns(Model& model) const {
 std::string model_name(const DataFile& file) {
   std::string name;
   for (const char* attribute : {"source", "title", "institution", "Conventions"})
-    if (const std::string text = file.text(attribute); !text.empty())
+    if (const std::string text = file.text(attribute);
+        std::ranges::any_of(text, [](unsigned char c) { return std::isalnum(c); }))
       name += (name.empty() ? "" : "; ") + text.substr(0, text.find('\n')).substr(0, 80);
   return name.empty() ? "not said" : name;
 }
