@@ -20,10 +20,10 @@ namespace nepho {
 namespace {
 
 constexpr std::size_t kEnoughTowers = 1024;         // from there on, towers are drawn
-constexpr std::size_t kTowers = 96, kColumns = 96;  // that are compared
+constexpr std::size_t kTowers = 64, kColumns = 64;  // that are compared
 constexpr int kStrata = 48;                         // a side of the square under a hat
 constexpr int kPointsEach = 8;                      // along a line, in each cell
-constexpr std::size_t kMostBricks = 4096;           // of the level that is summed up
+constexpr std::size_t kMostBricks = 1024;           // of the level that is summed up
 
 // All nodes of one level above each other, those with cloud.
 struct Tower {
@@ -218,7 +218,7 @@ BrickCheck Checker::run() {
   struct Sums {
     double off = 0, own = 0, square = 0, own_square = 0;
   };
-  std::vector<Sums> towers;
+  std::vector<Sums> columns;
   BrickCheck check;
   const std::vector<Tower> drawn = draw_towers();
   const std::size_t each = (kColumns + drawn.size()) / std::max<std::size_t>(drawn.size(), 1);
@@ -226,7 +226,6 @@ BrickCheck Checker::run() {
     std::map<std::uint32_t, std::vector<double>> bricks;
     for (const NodeKey key : tower.nodes) bricks[key.k()] = brick_values(source_, key, time_s_);
     const NodeKey first = tower.nodes.front();
-    Sums sums;
     for (std::size_t c = 0; c < each; ++c) {
       const auto offset = [&] { return std::uint32_t(number() * kBrickCells); };
       const std::uint32_t i = kBrickCells * first.i() + offset();
@@ -237,23 +236,21 @@ BrickCheck Checker::run() {
       const Compared depth = compare(bricks, first.root(), at, area);
       const double off[2] = {depth.bricks - depth.own[0], depth.bricks - depth.own[1]};
       const double weight = tower.weight * area;
-      sums.off += weight * (off[0] + off[1]) / 2;
-      sums.own += weight * (depth.own[0] + depth.own[1]) / 2;
-      sums.square += weight * off[0] * off[1];  // free of the points' noise
-      sums.own_square += weight * depth.own[0] * depth.own[1];
-      ++check.columns;
+      // Squares by two estimates are free of the points' noise.
+      columns.push_back({weight * (off[0] + off[1]) / 2, weight * (depth.own[0] + depth.own[1]) / 2,
+                         weight * off[0] * off[1], weight * depth.own[0] * depth.own[1]});
     }
-    towers.push_back(sums);
   }
   Sums all;
-  for (const Sums& s : towers)
+  for (const Sums& s : columns)
     all.off += s.off, all.own += s.own, all.square += s.square, all.own_square += s.own_square;
-  if (!(all.own > 0) && check.columns == 0)
+  check.columns = int(columns.size());
+  if (!(all.own > 0) && columns.empty())
     throw Error({"nothing to check", "volume '" + info_.name + "'", "some cloud", "none", ""});
   const double square = all.own_square > 0 ? all.square / all.own_square : 1;
   check.total_difference = all.own > 0 ? all.off / all.own : 1;
   double doubt = 0, square_doubt = 0;
-  for (const Sums& s : towers) {
+  for (const Sums& s : columns) {
     doubt += std::pow((s.off - check.total_difference * s.own) / all.own, 2);
     square_doubt += std::pow((s.square - square * s.own_square) / all.own_square, 2);
   }

@@ -72,7 +72,9 @@ class Moment {
   // The column of the model's cell, with the fog below its ground, as bricks have it.
   OwnColumn own_column(const Ellipsoid& body, const glm::dvec3& ecef_m) const {
     OwnColumn column;
-    const std::optional<std::size_t> cell = cell_at(geodetic_point(body, ecef_m));
+    // Places are asked for in clusters: the last one's is a start, and no more than that.
+    thread_local glm::dvec2 nearby{0.0};
+    const std::optional<std::size_t> cell = cell_at(geodetic_point(body, ecef_m), &nearby);
     if (!cell) return column;
     const std::size_t nz = std::size_t(columns_.nz);
     const float* z = &columns_.interface_m[*cell * (nz + 1)];
@@ -93,9 +95,12 @@ class Moment {
   }
 
  private:
-  std::optional<std::size_t> cell_at(const GeodeticPoint& point) const {
-    const auto [at, off_cells] = search_.find({point.latitude_deg, point.longitude_deg});
+  std::optional<std::size_t> cell_at(const GeodeticPoint& point,
+                                     glm::dvec2* nearby = nullptr) const {
+    const glm::dvec2 deg{point.latitude_deg, point.longitude_deg};
+    const auto [at, off_cells] = nearby ? search_.find(deg, *nearby) : search_.find(deg);
     if (off_cells > 0) return {};
+    if (nearby) *nearby = at;
     const auto index = [](double x, int n) { return std::size_t(std::min(int(x), n - 1)); };
     return index(at.y, columns_.ny) * std::size_t(columns_.nx) + index(at.x, columns_.nx);
   }
