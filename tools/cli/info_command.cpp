@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/commands.h"
@@ -82,7 +83,12 @@ Json volumes_and_picture(const SourceHost& host, const Scene& scene, bool check)
                              : first_time_with_cloud(*shown.source);
     out["volumes"].push_back(describe(shown, scene.volumes[v], opened.has_value(), check));
   }
-  if (opened) out["picture"] = picture_json(*opened);
+  // Procedural clouds are worked out as they are read: the tree would take as long as the picture.
+  const bool procedural = opened && std::ranges::any_of(opened->sources, [](const auto& source) {
+                            return source->info().refine_by_variance;
+                          });
+  if (procedural) out["no_picture"] = "procedural clouds are worked out as they are drawn";
+  if (opened && !procedural) out["picture"] = picture_json(*opened);
   return out;
 }
 

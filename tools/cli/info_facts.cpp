@@ -226,6 +226,7 @@ Json check_json(const BrickCheck& check, const DataError& error) {
           {"total_optical_depth_doubt", check.total_doubt},
           {"total_optical_depth_promised", BrickCheck::kTotal},
           {"column_rms_difference", check.column_rms},
+          {"column_rms_least", check.column_rms_least},
           {"column_rms_promised", BrickCheck::kColumns},
           {"columns", check.columns},
           {"kept", check.kept()},

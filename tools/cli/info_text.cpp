@@ -133,7 +133,8 @@ void print_check(const Json& e) {
     total += " +- " + number(e, "total_optical_depth_doubt", 100);
   line("check", "bricks against the source: total optical depth off by " + total + " (promised " +
                     number(e, "total_optical_depth_promised", 100) + "), columns " +
-                    number(e, "column_rms_difference", 100) + " % rms (promised " +
+                    number(e, "column_rms_difference", 100) + " % rms (" +
+                    number(e, "column_rms_least", 100) + " at least, promised " +
                     number(e, "column_rms_promised", 100) + ", " +
                     std::to_string(e["columns"].get<int>()) +
                     " columns): " + (e["kept"].get<bool>() ? "kept" : "NOT KEPT"));
