@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "bricks/data_facts.h"
 #include "bricks/node_key.h"
 #include "bricks/volume_info.h"
 
@@ -48,6 +49,12 @@ struct NodeSummary {
   bool constant = true;          // all channels, this level and all below
 };
 
+// The source's own column at a place.
+struct OwnColumn {
+  double optical_depth = 0;  // as the bricks should hold it
+  double mean_height_m = 0;  // of its extinction, over the ellipsoid
+};
+
 class BrickSource {
  public:
   virtual ~BrickSource() = default;
@@ -59,6 +66,17 @@ class BrickSource {
   virtual Status point_extinction_per_m(const glm::dvec3& ecef_m, double time_s,
                                         double& extinction_per_m) const noexcept {
     (void)ecef_m, (void)time_s, (void)extinction_per_m;
+    return Status::kUnsupported;
+  }
+  // Optional: what the data hold at a time, and their own column below and above a point of the
+  // world, both without bricks. For `info`, which also checks bricks against them.
+  virtual Status data_facts(double time_s, DataFacts& facts) const noexcept {
+    (void)time_s, (void)facts;
+    return Status::kUnsupported;
+  }
+  virtual Status own_column(const glm::dvec3& ecef_m, double time_s,
+                            OwnColumn& column) const noexcept {
+    (void)ecef_m, (void)time_s, (void)column;
     return Status::kUnsupported;
   }
   // Text of this thread's last failure, cut to `size` with a final 0; returns its whole length.

@@ -36,9 +36,12 @@ struct VolumeSpec {
   std::optional<GeodeticPlace> place;  // absent: free, at the ECEF origin
   std::optional<Phase> phase;          // absent: the source's own
   std::optional<glm::dvec3> co_albedo;
-  // One of the source's times, since its origin or as a date; both absent: the first with cloud.
+  // One of the source's times, since its origin, as a date, or by its place among them: "first",
+  // "last", "cloudiest" (the most optical depth in all), an index from 0. All absent: the first
+  // with cloud.
   std::optional<double> time_s;
   std::optional<std::int64_t> utc_ns;  // since 1970-01-01T00:00:00 UTC
+  std::string time_choice = {};
   std::string where = {};              // file, line, column and field, for messages
 };
 

@@ -14,7 +14,7 @@ namespace nepho {
 // What a source module is asked for and how it is refused. Plain pointers and counts, so that no
 // container crosses the C entry; BrickSource itself is C++ and is guarded by the AbiId.
 
-inline constexpr std::uint32_t kContractVersion = 1;
+inline constexpr std::uint32_t kContractVersion = 2;  // with every verb of BrickSource, too
 
 struct AbiId {
   std::uint32_t contract_version;
@@ -109,6 +109,9 @@ constexpr std::uint64_t layout_hash() noexcept {
         offsetof(VolumeInfo, assumptions), offsetof(VolumeInfo, facts), sizeof(ChannelInfo),
         offsetof(ChannelInfo, name), offsetof(ChannelInfo, unit), offsetof(ChannelInfo, code_bits),
         offsetof(ChannelInfo, max_abs_error), sizeof(Phase), offsetof(Phase, asymmetry),
+        sizeof(OwnColumn), sizeof(DataFacts), offsetof(DataFacts, variables),
+        offsetof(DataFacts, optical_depth), offsetof(DataFacts, extinction_m2),
+        sizeof(DataVariable), offsetof(DataVariable, low), offsetof(DataVariable, missing),
         sizeof(Lattice), sizeof(Chart), sizeof(BoxChart), sizeof(ShellChart), sizeof(RootPosition),
         sizeof(ColumnNames),
         // what a module is asked

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bricks/data_facts.h"
 #include "bricks/volume_info.h"
 
 namespace nepho::forecast {
@@ -48,6 +49,9 @@ struct ForecastColumns {
   std::vector<float> ice_extinction_per_m;  // the ice part; empty where the data have no ice
   // [cell]: all of its water is missing, so that it covers no coarser domain; empty: none.
   std::vector<char> without_data;
+  // For `info`: water of each column, [cell] or empty; cloud apart from rain, snow and graupel.
+  std::vector<float> liquid_kg_per_m2, ice_kg_per_m2, precipitation_kg_per_m2;
+  std::vector<DataVariable> variables;  // what was read of this time
 };
 
 // The model's own ground, [j * nx + i]; empty vectors where the file has none.
@@ -89,8 +93,12 @@ class Forecast {
   virtual double thinnest_layer_m() const = 0;
   // Mean effective radius of the liquid part (m), weighted by extinction: the volume's phase.
   virtual double liquid_radius_m() const = 0;
+  // Not so where all water is missing at all times.
+  virtual bool has_data() const { return true; }
   virtual std::vector<std::string> assumptions() const = 0;
   virtual std::vector<std::string> facts() const = 0;
+  // For `info`: model, grid, levels and optics, as far as they were found.
+  virtual std::vector<DataFacts::Recognised> recognised() const { return {}; }
   // What has been read until now, of all variables of all files.
   virtual std::vector<VariableBytes> bytes_read() const { return {}; }
 };

@@ -81,7 +81,11 @@ TEST(RealFiles, Katrina) {
   EXPECT_TRUE(says(*f, "agree with the map"));
   EXPECT_TRUE(says(*f, "data end at 6.2 km"));
   EXPECT_TRUE(says(*f, "WSM3"));
-  EXPECT_TRUE(says(*f, "Cloud water of a column: up to 3.67 kg/m2"));
+  const ForecastColumns c = f->columns(0);
+  double most = 0;
+  for (std::size_t n = 0; n < c.liquid_kg_per_m2.size(); ++n)
+    most = std::max(most, double(c.liquid_kg_per_m2[n] + c.ice_kg_per_m2[n]));
+  EXPECT_NEAR(most, 3.67, 0.005);
   expect_sound(*f);
 }
 
@@ -307,7 +311,9 @@ TEST(RealFiles, IconTriangles) {
   nc_close(id);
   const auto f = test::open(path);
   print(*f);
-  EXPECT_TRUE(says(*f, "5120 x 1 cells, cells in a row, clat, clon"));
+  EXPECT_TRUE(std::ranges::any_of(f->recognised(), [](const auto& r) {
+    return r.what == "grid" && r.text == "5120 x 1 cells, cells in a row, clat, clon";
+  }));
   expect_sound(*f);
   const auto grid = f->grid(0);
   ASSERT_NE(grid->polygons(), nullptr);

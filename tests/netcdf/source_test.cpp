@@ -289,7 +289,10 @@ TEST(NetcdfSource, SaysWhatItIs) {
         all, [&](const auto& text) { return text.find(what) != std::string::npos; });
   };
   EXPECT_TRUE(says(info.assumptions, "synthetic"));
-  EXPECT_TRUE(says(info.facts, "cut off at the top of the data, at 9.0 km, in 100 %"));
+  DataFacts facts;
+  ASSERT_EQ(source->data_facts(0, facts), Status::kOk);
+  EXPECT_NEAR(facts.data_top_m, 9000, 1);
+  EXPECT_EQ(facts.cut_share, 1);
 }
 
 }  // namespace

@@ -190,7 +190,7 @@ TEST(Wrf, SeveralFilesAreOneForecast) {
   EXPECT_EQ(f->times_s()[1], 3 * 3600.0);
   EXPECT_EQ(f->columns(0).extinction_per_m, open(first)->columns(0).extinction_per_m);
   EXPECT_EQ(f->columns(1).extinction_per_m, open(both)->columns(1).extinction_per_m);
-  EXPECT_NE(facts_of(*f).find("1 times occur twice"), std::string::npos);
+  EXPECT_NE(facts_of(*f).find("1 time occurs twice"), std::string::npos);
 }
 
 }  // namespace

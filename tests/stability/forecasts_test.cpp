@@ -93,7 +93,7 @@ TEST(Forecasts, CloudFractionKeepsTheWaterPath) {
     std::vector<float> path(1, 0.0f);
     WaterStatistics statistics;
     const std::vector<float> values(nz, float(content));
-    add_water(water, values, air, setting, columns, path, statistics);
+    add_water(water, values, air, setting, columns, {path, path}, statistics);
     worst = std::max(worst, std::abs(double(path[0]) / (content * layer_m * nz) - 1));
     for (const float k : columns.extinction_per_m) EXPECT_TRUE(std::isfinite(k) && k > 0);
     // The cloud's own water taken for the cell's.
@@ -160,7 +160,7 @@ TEST(Forecasts, TimesKeepTheirSeconds) {
                 {{"units", std::string("hours since 1900-01-01 00:00:00.0")}});
   }
   const netcdf::NcFile file(path, {});
-  const std::vector<std::int64_t> found = read_times_ns(file, *file.find("time"));
+  const std::vector<std::int64_t> found = read_times(file, *file.find("time")).utc_ns;
   const std::int64_t first = *parse_date_ns("2011-01-15 12:00:00");
   double worst = 0, naive = 0;
   for (std::size_t i = 0; i < n; ++i) {

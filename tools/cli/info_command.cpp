@@ -1,149 +1,16 @@
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/info_facts.h"
 #include "cli/scene_input.h"
-#include "common/data_error.h"
-#include "common/framing.h"
 #include "common/open_scene.h"
 #include "common/planet_scene.h"
 #include "core/error.h"
-#include "geo/place.h"
 #include "scene/scene_file.h"
-#include "scene/utc.h"
 
 namespace nepho {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-Json triple(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
-// Lengths of one finest cell's edges at the middle of the first root.
-glm::dvec3 finest_cell_m(const VolumeInfo& info) {
-  const Index3& cells = info.lattice.cells(info.lattice.max_level());
-  const glm::dvec3 middle = info.chart->ecef_m({0, glm::dvec3(0.5)});
-  glm::dvec3 lengths;
-  for (int a = 0; a < 3; ++a) {
-    glm::dvec3 q(0.5);
-    q[a] += 1.0 / cells[std::size_t(a)];
-    lengths[a] = glm::length(info.chart->ecef_m({0, q}) - middle);
-  }
-  return lengths;
-}
-
-std::string split_name(SplitMask mask) {
-  std::string name;
-  for (int a = 0; a < 3; ++a)
-    if (splits(mask, a)) name += "xyz"[a];
-  return name;
-}
-
-// The extremes over the whole volume: those of the roots.
-std::pair<float, float> extinction_range(const BrickSource& source, double time_s) {
-  float low = 0, high = 0;
-  for (int root = 0; root < source.info().chart->roots(); ++root) {
-    const NodeSummary summary = summary_of(source, {root, 0, 0u, 0u, 0u}, time_s);
-    low = root ? std::min(low, summary.min_extinction_per_m) : summary.min_extinction_per_m;
-    high = std::max(high, summary.max_extinction_per_m);
-  }
-  return {low, high};
-}
-
-// Where the clouds of a planet's weather are: the box of their nodes, from summaries alone.
-Json coordinates(const BrickSource& source, double time_s, const Ellipsoid& body) {
-  double low_lat = 90, high_lat = -90, low_m = 1e300, high_m = -1e300;
-  std::vector<double> longitudes;
-  for (const glm::dvec3& p : occupied_points(source, time_s)) {
-    const GeodeticPoint g = geodetic_point(body, p);
-    low_lat = std::min(low_lat, g.latitude_deg);
-    high_lat = std::max(high_lat, g.latitude_deg);
-    low_m = std::min(low_m, g.height_m);
-    high_m = std::max(high_m, g.height_m);
-    longitudes.push_back(g.longitude_deg);
-  }
-  if (longitudes.empty()) return nullptr;
-  // The box begins behind the widest gap, which may hold the date line.
-  std::ranges::sort(longitudes);
-  double gap = 360 - longitudes.back() + longitudes.front(), west = longitudes.front();
-  for (std::size_t i = 1; i < longitudes.size(); ++i)
-    if (longitudes[i] - longitudes[i - 1] > gap)
-      gap = longitudes[i] - longitudes[i - 1], west = longitudes[i];
-  return {{"lat_deg", {low_lat, high_lat}},
-          {"lon_deg", {west, west + 360 - gap}},
-          {"height_m", {low_m, high_m}}};
-}
-
-Json check_of(const BrickSource& source, double time_s) {
-  const DataError error = data_error(source, time_s);
-  return {{"rms_per_m", error.rms_per_m},
-          {"relative_rms",
-           error.field_rms_per_m > 0 ? Json(error.rms_per_m / error.field_rms_per_m) : Json()},
-          {"largest_per_m", error.largest_per_m},
-          {"field_rms_per_m", error.field_rms_per_m},
-          {"points", error.points},
-          {"nodes", error.nodes}};
-}
-
-double chosen_time(const BrickSource& source, const VolumeSpec& volume) {
-  const VolumeInfo& info = source.info();
-  if (volume.utc_ns) return time_at(info, *volume.utc_ns, "volume '" + info.name + "'");
-  return volume.time_s ? time_of(volume, info) : first_time_with_cloud(source);
-}
-
-Json describe(const BrickSource& source, const VolumeSpec& volume, bool check) {
-  const VolumeInfo& info = source.info();
-  const Index3& cells = info.lattice.cells(info.lattice.max_level());
-  const double time_s = chosen_time(source, volume);
-  const auto [low, high] = extinction_range(source, time_s);
-  Json out{{"name", info.name},
-           {"chart", info.chart->kind() == ChartKind::kBox ? "box" : "shell"},
-           {"roots", info.chart->roots()},
-           {"levels", info.lattice.max_level() + 1},
-           {"finest_cells", cells},
-           {"finest_cell_m", triple(finest_cell_m(info))},
-           {"samples", info.finest == SampleKind::kPoint ? "point" : "hat"},
-           {"bounds_q", {triple(info.bounds.low), triple(info.bounds.high)}},
-           {"extinction_per_m", {{"time_s", time_s}, {"min", low}, {"max", high}}},
-           {"co_albedo", triple(info.co_albedo)},
-           {"time_origin", utc_text(info.time_origin_ns)},
-           {"times_s", info.times_s},
-           {"source_bytes", info.source_bytes},
-           {"files", volume.files},
-           {"assumptions", info.assumptions},
-           {"facts", info.facts}};
-  // A source whose data have no date counts from 1970.
-  if (info.time_origin_ns != 0)
-    for (const double t : info.times_s) out["times_utc"].push_back(utc_text(utc_of(info, t)));
-  out["on_planet"] = info.on_planet;
-  if (info.on_planet) {
-    const auto* shell = dynamic_cast<const ShellChart*>(info.chart.get());
-    const Ellipsoid body = shell ? shell->body() : Ellipsoid::wgs84();
-    out["cloud"] = coordinates(source, time_s, body);
-    out["has_ground"] = info.surface != nullptr;
-  }
-  if (check) out["data_error"] = check_of(source, time_s);
-  for (int level = 0; level < info.lattice.max_level(); ++level)
-    out["split_axes"].push_back(split_name(info.lattice.split_axes(level)));
-  for (const ChannelInfo& channel : info.channels)
-    out["channels"].push_back({{"name", channel.name},
-                               {"unit", channel.unit},
-                               {"code_bits", channel.code_bits},
-                               {"max_abs_error", channel.max_abs_error}});
-  const bool mie = info.phase.kind == PhaseKind::kMie;
-  out["phase"] = mie ? Json{{"kind", "mie"}, {"effective_radius_m", info.phase.effective_radius_m}}
-                     : Json{{"kind", "henyey_greenstein"}, {"asymmetry", info.phase.asymmetry}};
-  return out;
-}
 
 // A scene that is no JSON is shown as it stands: `render` says what is wrong with it.
 Json metadata_value(const std::string& key, const std::string& value) {
@@ -155,63 +22,6 @@ Json metadata_value(const std::string& key, const std::string& value) {
 std::string text_of(const Json& value) {
   return value.is_string() ? value.get<std::string>()
                            : value.dump(2, ' ', false, Json::error_handler_t::replace);
-}
-
-void print_list(const char* title, const Json& lines) {
-  for (const Json& line : lines) std::printf("  %s: %s\n", title, line.get<std::string>().c_str());
-}
-
-void print_check(const Json& e) {
-  const bool relative = e["relative_rms"].is_number();
-  std::printf("  data error: rms %.3g 1/m%s, largest %.3g 1/m (%d points in %d finest nodes)\n",
-              e["rms_per_m"].get<double>(),
-              relative ? (", " + number_text(100 * e["relative_rms"].get<double>()) +
-                          " % of the field's rms")
-                             .c_str()
-                       : "",
-              e["largest_per_m"].get<double>(), e["points"].get<int>(), e["nodes"].get<int>());
-}
-
-void print_times(const Json& times) {
-  constexpr std::size_t kMost = 12;
-  std::printf("  valid");
-  for (std::size_t i = 0; i < std::min(times.size(), kMost); ++i)
-    std::printf("%s %s", i ? "," : "", times[i].get<std::string>().c_str());
-  if (times.size() > kMost) std::printf(", ... %s", times.back().get<std::string>().c_str());
-  std::printf("\n");
-}
-
-void print_volume(const Json& v) {
-  const auto cells = v["finest_cells"], size = v["finest_cell_m"];
-  std::printf("%s\n", v["name"].get<std::string>().c_str());
-  std::printf("  %s, %d root(s), %d levels, %u x %u x %u cells of %.6g x %.6g x %.6g m\n",
-              v["chart"].get<std::string>().c_str(), v["roots"].get<int>(), v["levels"].get<int>(),
-              cells[0].get<unsigned>(), cells[1].get<unsigned>(), cells[2].get<unsigned>(),
-              size[0].get<double>(), size[1].get<double>(), size[2].get<double>());
-  std::printf(
-      "  extinction %.6g to %.6g 1/m (at %.6g s)\n", v["extinction_per_m"]["min"].get<double>(),
-      v["extinction_per_m"]["max"].get<double>(), v["extinction_per_m"]["time_s"].get<double>());
-  for (const Json& channel : v["channels"])
-    std::printf("  channel %s [%s], %d bit, error to %.3g\n",
-                channel["name"].get<std::string>().c_str(),
-                channel["unit"].get<std::string>().c_str(), channel["code_bits"].get<int>(),
-                channel["max_abs_error"].get<double>());
-  std::printf("  phase %s; samples: %s\n", v["phase"]["kind"].get<std::string>().c_str(),
-              v["samples"].get<std::string>().c_str());
-  if (v["on_planet"].get<bool>() && v["cloud"].is_object()) {
-    const Json &lat = v["cloud"]["lat_deg"], &lon = v["cloud"]["lon_deg"],
-               &height = v["cloud"]["height_m"];
-    std::printf("  cloud within %.4g to %.4g N, %.4g to %.4g E, %.0f to %.0f m\n",
-                lat[0].get<double>(), lat[1].get<double>(), lon[0].get<double>(),
-                lon[1].get<double>(), height[0].get<double>(), height[1].get<double>());
-  }
-  if (v.contains("data_error")) print_check(v["data_error"]);
-  if (v.contains("times_utc")) print_times(v["times_utc"]);
-  std::printf("  %zu time(s), from %s; source holds %.2f MiB\n", v["times_s"].size(),
-              v["time_origin"].get<std::string>().c_str(),
-              v["source_bytes"].get<double>() / (1 << 20));
-  print_list("fact", v["facts"]);
-  print_list("assumed", v["assumptions"]);
 }
 
 Scene scene_of(const InfoOptions& options, const PictureFiles& pictures) {
@@ -231,6 +41,78 @@ Scene scene_of(const InfoOptions& options, const PictureFiles& pictures) {
   return scene;
 }
 
+// A volume and the time that is told of it: a picture's, where one can be drawn.
+struct Shown {
+  const BrickSource* source = nullptr;
+  double time_s = 0;
+};
+
+std::string why_shown(const VolumeSpec& volume, bool of_picture) {
+  if (volume.utc_ns || volume.time_s || !volume.time_choice.empty()) return "as asked for";
+  return of_picture ? "the first with cloud, by day where there is one" : "the first with cloud";
+}
+
+Json describe(const Shown& shown, const VolumeSpec& volume, bool of_picture, bool check) {
+  const BrickSource& source = *shown.source;
+  Json out = volume_json(source, volume);
+  out["time"] = times_json(source.info(), shown.time_s);
+  out["time"]["shown_because"] = why_shown(volume, of_picture);
+  add_data(out, source, shown.time_s);
+  if (Json rows = states_json(source, shown.time_s); rows.is_array()) out["states"] = rows;
+  if (check)
+    out["check"] = check_json(check_bricks(source, shown.time_s), data_error(source, shown.time_s));
+  return out;
+}
+
+// As `render` opens it, so that times and bricks are those of its picture. What cannot be drawn (an
+// eye below the ground) is told all the same, without a picture.
+Json volumes_and_picture(const SourceHost& host, const Scene& scene, bool check) {
+  Json out;
+  std::optional<OpenedScene> opened;
+  std::vector<std::unique_ptr<BrickSource>> sources;
+  try {
+    opened = open_scene(host, scene);
+  } catch (const Error& error) {
+    for (const VolumeSpec& volume : scene.volumes) sources.push_back(open_volume(host, volume));
+    out["no_picture"] = error.what();
+  }
+  for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
+    Shown shown{opened ? opened->sources[v].get() : sources[v].get()};
+    const auto named_s = opened ? std::nullopt : named_time(scene.volumes[v], *shown.source);
+    shown.time_s = opened    ? opened->request.volumes[v].time_s
+                   : named_s ? *named_s
+                             : first_time_with_cloud(*shown.source);
+    out["volumes"].push_back(describe(shown, scene.volumes[v], opened.has_value(), check));
+  }
+  // Procedural clouds are worked out as they are read: the tree would take as long as the picture.
+  const bool procedural = opened && std::ranges::any_of(opened->sources, [](const auto& source) {
+                            return source->info().refine_by_variance;
+                          });
+  if (procedural) out["no_picture"] = "procedural clouds are worked out as they are drawn";
+  if (opened && !procedural) out["picture"] = picture_json(*opened);
+  return out;
+}
+
+// After all has been told, as one error: the exit status is for programs that check.
+void refuse_broken_promises(const Json& out) {
+  std::fflush(stdout);
+  for (const Json& volume : out["volumes"]) {
+    if (volume["check"]["kept"].get<bool>()) continue;
+    const auto percent = [&](const char* key) {
+      char text[32];
+      std::snprintf(text, sizeof text, "%.3g %%", 100 * volume["check"][key].get<double>());
+      return std::string(text);
+    };
+    throw Error(
+        {"the bricks are not what the source holds",
+         "volume '" + volume["name"].get<std::string>() + "'",
+         "total optical depth within " + percent("total_optical_depth_promised") +
+             ", columns within " + percent("column_rms_promised") + " rms",
+         percent("total_optical_depth_difference") + " and " + percent("column_rms_difference"),
+         "finer bricks hold more: max_level, or a finer resolution of the volume"});
+  }
+}
+
 }  // namespace
 
 void info_command(const InfoOptions& options) {
@@ -244,18 +126,21 @@ void info_command(const InfoOptions& options) {
     const SourceHost host(default_module_folders());
     Scene scene = scene_of(options, pictures);
     set_time(scene, options.time);
-    for (const VolumeSpec& volume : scene.volumes)
-      out["volumes"].push_back(describe(*open_volume(host, volume), volume, options.check));
+    out = volumes_and_picture(host, scene, options.check);
   }
   if (options.json) {
     std::printf("%s\n", out.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
-    return;
+  } else {
+    if (out.contains("volumes"))
+      for (const Json& volume : out["volumes"]) print_volume(volume);
+    if (out.contains("picture")) print_picture(out["picture"]);
+    if (out.contains("no_picture"))
+      std::printf("no picture: %s\n", out["no_picture"].get<std::string>().c_str());
+    if (out.contains("metadata"))
+      for (const auto& [key, value] : out["metadata"].items())
+        std::printf("%s: %s\n", key.c_str(), text_of(value).c_str());
   }
-  if (out.contains("volumes"))
-    for (const Json& volume : out["volumes"]) print_volume(volume);
-  if (out.contains("metadata"))
-    for (const auto& [key, value] : out["metadata"].items())
-      std::printf("%s: %s\n", key.c_str(), text_of(value).c_str());
+  if (options.check && out.contains("volumes")) refuse_broken_promises(out);
 }
 
 }  // namespace nepho

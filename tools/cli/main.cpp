@@ -36,6 +36,8 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope compare a.exr b.exr --diff apart.png        and where (FLIP)
   nephoscope bench scene.json --sweep step=0.5,1,2 --sweep budget-mib=64,256 -o report)";
 
+constexpr const char* kTime =
+    "of the data: 2005-08-28T15:00Z, an index from 0, first, last, cloudiest, or seconds: 3600s";
 constexpr const char* kRegion =
     "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF, GRIB)";
 
@@ -95,7 +97,7 @@ void add_camera_options(CLI::App& command, RenderOptions& o) {
       .add_option("--sun", o.sun,
                   "AZIMUTH,ELEVATION in degrees, or a date: where it stands at 2005-08-28T15:00Z")
       ->group(group);
-  command.add_option("--time", o.time, "of the data: 2005-08-28T15:00Z, or seconds")->group(group);
+  command.add_option("--time", o.time, kTime)->group(group);
   command.add_flag("--no-planet", o.no_planet, "weather without its planet's ground and air")
       ->group(group);
   command.add_option("--exposure", o.exposure_ev, "in stops (EV); otherwise from the picture")
@@ -227,7 +229,7 @@ int run(int argc, char** argv) {
   tell->add_option("FILE", info.input, "data, SCENE.json or PICTURE")->required();
   tell->add_flag("--json", info.json, "for programs");
   tell->add_flag("--check", info.check, "the source's own field against its finest bricks");
-  tell->add_option("--time", info.time, "of the data: 2005-08-28T15:00Z, or seconds");
+  tell->add_option("--time", info.time, kTime);
   tell->add_flag("--force", info.force, "take values that no cloud has (NetCDF, GRIB)")
       ->group("Data");
   tell->add_option("--region", info.region, kRegion)->group("Data");

@@ -349,10 +349,13 @@ void set_time(Scene& scene, const std::optional<std::string>& value) {
     if (any && volume.files.empty()) continue;
     volume.time_s.reset();
     volume.utc_ns.reset();
+    volume.time_choice.clear();
     if (is_date(*value))
       volume.utc_ns = utc_ns_value(*value, "--time");
+    else if (value->ends_with('s') && value->find_first_not_of("+-.0123456789es") == value->npos)
+      volume.time_s = number_value("--time", value->substr(0, value->size() - 1));
     else
-      volume.time_s = number_value("--time", *value);
+      volume.time_choice = *value;
     volume.where = "--time";
   }
 }

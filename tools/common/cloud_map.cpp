@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "bricks/quantise.h"
+#include "common/brick_columns.h"
 #include "common/framing.h"
 #include "core/error.h"
 
@@ -35,7 +35,7 @@ bool touches(const VolumeInfo& info, NodeKey key, const Cap& cap) {
   return angle_rad(middle, cap.direction) <= radius_rad + cap.radius_rad;
 }
 
-std::vector<NodeKey> cloudy_nodes(const BrickSource& source, double time_s,
+std::vector<NodeKey> nodes_in_cap(const BrickSource& source, double time_s,
                                   const std::optional<Cap>& cap) {
   const VolumeInfo& info = source.info();
   std::vector<NodeKey> nodes;
@@ -57,21 +57,6 @@ std::vector<NodeKey> cloudy_nodes(const BrickSource& source, double time_s,
     if (last || kept.size() >= kEnoughNodes || finer.empty()) return kept;
     nodes = std::move(finer);
   }
-}
-
-std::vector<double> brick_of(const BrickSource& source, NodeKey key, double time_s) {
-  std::vector<std::uint16_t> codes(kBrickVolume);
-  ChannelView view{Channel::kExtinction, codes.data()};
-  const Status status = source.read(key, time_s, BrickView(&view, 1));
-  if (status != Status::kOk) {
-    char text[512] = "";
-    source.last_error(text, sizeof text);
-    throw Error({to_string(status), "volume '" + source.info().name + "'", "", text, ""});
-  }
-  std::vector<double> values(kBrickVolume);
-  for (std::size_t n = 0; n < values.size(); ++n)
-    values[n] = decode(codes[n], view.scale, view.offset);
-  return values;
 }
 
 // Extinction at the middle of a cell.
@@ -203,10 +188,10 @@ Cap CloudMap::bulk() const {
 CloudMap cloud_map(const BrickSource& source, double time_s, const Ellipsoid& body,
                    const std::optional<Cap>& cap) {
   const VolumeInfo& info = source.info();
-  const std::vector<NodeKey> nodes = cloudy_nodes(source, time_s, cap);
+  const std::vector<NodeKey> nodes = nodes_in_cap(source, time_s, cap);
   std::map<ColumnKey, CloudColumn> columns;
   for (const NodeKey key : nodes)
-    add_brick(info, key, brick_of(source, key, time_s), body, columns);
+    add_brick(info, key, brick_values(source, key, time_s), body, columns);
   CloudMap result;
   std::vector<double> sides_m;
   for (const auto& [key, column] : columns) {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "bricks/quantise.h"
+#include "common/brick_columns.h"
 #include "common/framing.h"
 #include "core/error.h"
 
@@ -38,16 +38,6 @@ class Drawing {
     for (int n = 0; n < kTries; ++n)
       if (const auto node = descend()) return *node;
     throw Error({"nothing to check", "volume '" + info_.name + "'", "some cloud", "none", ""});
-  }
-
-  std::vector<double> brick(NodeKey key) const {
-    std::vector<std::uint16_t> codes(kBrickVolume);
-    ChannelView view{Channel::kExtinction, codes.data()};
-    if (const Status s = source_.read(key, time_s_, BrickView(&view, 1)); s != Status::kOk)
-      refuse(source_, s);
-    std::vector<double> values;
-    for (const std::uint16_t code : codes) values.push_back(decode(code, view.scale, view.offset));
-    return values;
   }
 
  private:
@@ -107,7 +97,7 @@ DataError data_error(const BrickSource& source, double time_s, std::uint64_t see
   double squares = 0, field_squares = 0, weights = 0;
   for (int n = 0; n < kNodes; ++n) {
     const auto [key, weight] = draw.finest_node();
-    const std::vector<double> brick = draw.brick(key);
+    const std::vector<double> brick = brick_values(source, key, time_s);
     ++result.nodes;
     for (int p = 0; p < kPointsPerNode; ++p) {
       const double x = draw.number(), y = draw.number(), z = draw.number();

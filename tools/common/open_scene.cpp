@@ -136,10 +136,12 @@ Camera frame_freely(OpenedScene& opened, const Placement& frame) {
     VolumeSpec& volume = opened.scene.volumes[v];
     const BrickSource& source = *opened.sources[v];
     const VolumeInfo& info = source.info();
-    if (volume.utc_ns) volume.time_s = time_at(info, *volume.utc_ns, "volume '" + info.name + "'");
+    const std::optional<double> named_s = named_time(volume, source);
+    const double time_s = named_s ? *named_s : first_time_with_cloud(source);
+    if (named_s) volume.time_s = named_s;
     volume.utc_ns.reset();
-    const double time_s = volume.time_s ? time_of(volume, info) : first_time_with_cloud(source);
-    if (time_s != info.times_s.front() && !volume.time_s)
+    volume.time_choice.clear();
+    if (time_s != info.times_s.front() && !named_s)
       opened.assumptions.push_back(info.name + ": the first time that is not empty, " +
                                    number_text(time_s) + " s");
     opened.request.volumes[v].time_s = time_s;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct OpenedScene {
 std::unique_ptr<BrickSource> open_volume(const SourceHost& host, const VolumeSpec& volume);
 // The volume's time; throws Error that lists the times where it has no such one.
 double time_of(const VolumeSpec& volume, const VolumeInfo& info);
+// The time that the volume names in one of the ways of scene.h; nothing where it names none. Throws
+// Error where the source has no such one.
+std::optional<double> named_time(const VolumeSpec& volume, const BrickSource& source);
 // Of a sequence that begins with an empty frame, a picture of its first cloud. The first time where
 // all are empty.
 double first_time_with_cloud(const BrickSource& source);

@@ -78,10 +78,8 @@ class Framing {
   void fix_times() {
     open_times_.assign(scene_.volumes.size(), false);
     for (std::size_t v = 0; v < scene_.volumes.size(); ++v) {
-      if (spec(v).utc_ns)
-        time_s(v) = time_at(info(v), *spec(v).utc_ns, "volume '" + info(v).name + "'");
-      else if (spec(v).time_s)
-        time_s(v) = time_of(spec(v), info(v));
+      if (const auto named_s = named_time(spec(v), *opened_.sources[v]))
+        time_s(v) = *named_s;
       else
         open_times_[v] = true;
       if (open_times_[v]) time_s(v) = first_time_with_cloud(*opened_.sources[v]);
@@ -115,6 +113,7 @@ class Framing {
         for (const double t : info(v).times_s)
           if (utc_of(info(v), t) == utc_of(info(*lead_), time_s(*lead_))) time_s(v) = t;
       spec(v).utc_ns.reset();
+      spec(v).time_choice.clear();
       spec(v).time_s = time_s(v);
     }
   }

@@ -75,7 +75,8 @@ VolumeSpec read_volume(const ObjectReader& in, const std::filesystem::path& fold
   if (const auto place = in.object("place")) volume.place = read_place(*place);
   if (const auto phase = in.object("phase")) volume.phase = read_phase(*phase);
   volume.co_albedo = in.vector("co_albedo");
-  in.at_most_one({"time_s", "utc"});
+  in.at_most_one({"time_s", "utc", "time"});
+  volume.time_choice = in.text("time").value_or("");
   volume.time_s = in.number("time_s");
   if (const auto utc = in.text("utc")) volume.utc_ns = utc_ns_value(*utc, in.where("utc"));
   volume.name = in.text("name").value_or(

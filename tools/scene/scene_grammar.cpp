@@ -40,6 +40,7 @@ constexpr FieldGrammar kVolumeFields[] = {
     {"co_albedo", kVector, 0, 1},
     {"time_s", kNumber},
     {"utc", kText},
+    {"time", kText},
 };
 constexpr ObjectGrammar kVolume{"volume", kVolumeFields};
 

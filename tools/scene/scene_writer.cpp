@@ -53,6 +53,7 @@ Json write_volume(const VolumeSpec& volume, const std::filesystem::path& folder)
   if (volume.co_albedo) out["co_albedo"] = vector(*volume.co_albedo);
   if (volume.time_s) out["time_s"] = *volume.time_s;
   if (volume.utc_ns) out["utc"] = utc_text(*volume.utc_ns);
+  if (!volume.time_choice.empty()) out["time"] = volume.time_choice;
   return out;
 }
 

@@ -12,7 +12,8 @@
 #include <utility>
 
 #include "forecast/bricks/box_around.h"
-#include "forecast/bricks/grid_search.h"
+#include "forecast/bricks/column_facts.h"
+#include "forecast/bricks/domain_state.h"
 #include "forecast/bricks/hat_remap.h"
 #include "forecast/bricks/layout.h"
 #include "forecast/bricks/surface_of.h"
@@ -32,36 +33,6 @@ std::string text(const char* format, double a, double b = 0) {
 }
 
 using Boxes = std::function<std::shared_ptr<const BoxAround>(const HatRemap&)>;
-
-// The cells of one domain at one of its times.
-struct DomainState {
-  GridSearch search;
-  ForecastColumns columns;
-
-  // Of the cell that holds a place: nothing where none does, or one without data.
-  std::optional<double> extinction_per_m(const GeodeticPoint& point, double extend_below_m) const {
-    const auto [at, off_cells] = search.find({point.latitude_deg, point.longitude_deg});
-    if (off_cells > 0) return {};
-    const auto index = [](double x, int n) { return std::size_t(std::min(int(x), n - 1)); };
-    const std::size_t nz = std::size_t(columns.nz);
-    const std::size_t cell =
-        index(at.y, columns.ny) * std::size_t(columns.nx) + index(at.x, columns.nx);
-    if (!columns.without_data.empty() && columns.without_data[cell]) return {};
-    const float* interface_m = &columns.interface_m[cell * (nz + 1)];
-    if (point.height_m < double(interface_m[0]) - extend_below_m) return 0;
-    const float* above =
-        std::upper_bound(interface_m + 1, interface_m + nz + 1, float(point.height_m));
-    if (above == interface_m + nz + 1) return 0;
-    return double(columns.extinction_per_m[cell * nz + std::size_t(above - interface_m - 1)]);
-  }
-};
-
-std::vector<DomainState> states_of(const Forecast& forecast, std::size_t time) {
-  std::vector<DomainState> states;
-  for (const DomainTime& d : forecast.domains(time))
-    states.push_back({GridSearch(d.domain->grid(d.time)), d.domain->columns(d.time)});
-  return states;
-}
 
 std::vector<HatDomain> hat_domains(const std::vector<DomainState>& states) {
   std::vector<HatDomain> domains;
@@ -92,9 +63,24 @@ class Moment {
   double point_extinction_per_m(const Ellipsoid& body, const glm::dvec3& ecef_m) const {
     if (box_) return remap_.interpolated(ecef_m, HatRemap::Part::kTotal);
     const GeodeticPoint point = geodetic_point(body, ecef_m);
+    const glm::dvec2 deg{point.latitude_deg, point.longitude_deg};
     for (const DomainState& domain : domains_)
-      if (const auto value = domain.extinction_per_m(point, options_.extend_below_m)) return *value;
+      if (const auto cell = domain.cell_at(deg))
+        return domain.extinction_per_m(*cell, point.height_m, options_.extend_below_m);
     return 0;
+  }
+
+  // The column of the finest domain's own cell there; nothing where there is none.
+  OwnColumn own_column(const Ellipsoid& body, const glm::dvec3& ecef_m) const {
+    const GeodeticPoint point = geodetic_point(body, ecef_m);
+    // Places are asked for in clusters: the last one's is a start, and no more than that.
+    thread_local std::vector<glm::dvec2> nearby;
+    nearby.resize(std::max(nearby.size(), domains_.size()));
+    for (std::size_t n = 0; n < domains_.size(); ++n)
+      if (const auto cell =
+              domains_[n].cell_at({point.latitude_deg, point.longitude_deg}, &nearby[n]))
+        return domains_[n].column(*cell, options_.extend_below_m);
+    return {};
   }
 
   std::uint64_t bytes() const {
@@ -173,6 +159,25 @@ class NetcdfSource final : public BrickSource {
       return Status::kOk;
     });
   }
+  Status own_column(const glm::dvec3& ecef_m, double time_s,
+                    OwnColumn& column) const noexcept override {
+    if (options_.box) return Status::kUnsupported;  // its columns do not stand upright
+    return answered(time_s, [&](const Moment& now) {
+      column = now.own_column(layout_.chart->body(), ecef_m);
+      return Status::kOk;
+    });
+  }
+  // No bricks are made for it.
+  Status data_facts(double time_s, DataFacts& facts) const noexcept override {
+    return answered_at(time_s, [&](std::size_t time) {
+      const std::shared_ptr<const Moment> kept = kept_moment(time);
+      const double below_m = layout_.extend_below_m;
+      facts = kept ? column_facts(kept->domains(), below_m)
+                   : column_facts(states_of(*forecast_, time), below_m);
+      facts.recognised = forecast_->recognised();
+      return Status::kOk;
+    });
+  }
   std::size_t last_error(char* buffer, std::size_t size) const noexcept override {
     return copy_last_error(buffer, size);
   }
@@ -180,13 +185,17 @@ class NetcdfSource final : public BrickSource {
  private:
   template <class Answer>
   Status answered(double time_s, Answer&& answer) const noexcept {
+    return answered_at(time_s, [&](std::size_t time) { return answer(*moment(time)); });
+  }
+  template <class Answer>
+  Status answered_at(double time_s, Answer&& answer) const noexcept {
     try {
       const auto at = std::ranges::find(info_.times_s, time_s);
       if (at == info_.times_s.end()) {
         set_last_error(to_string(Status::kNoSuchTime));
         return Status::kNoSuchTime;
       }
-      return answer(*moment(std::size_t(at - info_.times_s.begin())));
+      return answer(std::size_t(at - info_.times_s.begin()));
     } catch (const std::exception& e) {
       set_last_error(e.what());
     } catch (...) {
@@ -195,6 +204,11 @@ class NetcdfSource final : public BrickSource {
     return Status::kReadFailed;
   }
 
+  std::shared_ptr<const Moment> kept_moment(std::size_t time) const {
+    const std::lock_guard lock(mutex_);
+    const auto at = std::ranges::find(moments_, time, [](const auto& kept) { return kept.first; });
+    return at == moments_.end() ? nullptr : at->second;
+  }
   std::shared_ptr<const Moment> moment(std::size_t time) const {
     const std::lock_guard lock(mutex_);
     const auto at = std::ranges::find(moments_, time, [](const auto& kept) { return kept.first; });
@@ -220,7 +234,7 @@ class NetcdfSource final : public BrickSource {
   }
 
   void describe(const std::string& name, const Moment& first);
-  void state_facts(const Moment& first);
+  void state_facts();
 
   SourceOptions options_;
   std::shared_ptr<const Forecast> forecast_;
@@ -265,7 +279,7 @@ void NetcdfSource::describe(const std::string& name, const Moment& first) {
   if (ground.map && !ground.has_water)
     info_.assumptions.push_back(
         "The data have no land mask: sea is where the ground is at or below 0.5 m.");
-  state_facts(first);
+  state_facts();
 }
 
 std::optional<std::string> reading_fact(const Forecast& forecast) {
@@ -278,17 +292,7 @@ std::optional<std::string> reading_fact(const Forecast& forecast) {
   return text("Read: %.3g MB; all values of the data are %.3g MB.", read / 1e6, held / 1e6);
 }
 
-void count_cut(const ForecastColumns& columns, std::size_t& cut, std::size_t& cloudy) {
-  const std::size_t nz = std::size_t(columns.nz);
-  for (std::size_t top = nz; top <= columns.extinction_per_m.size(); top += nz) {
-    const auto begin = columns.extinction_per_m.begin() + std::ptrdiff_t(top);
-    const auto is_cloud = [](float value) { return value > 1e-5f; };
-    cut += is_cloud(begin[-1]);
-    cloudy += std::any_of(begin - std::ptrdiff_t(nz), begin, is_cloud);
-  }
-}
-
-void NetcdfSource::state_facts(const Moment& first) {
+void NetcdfSource::state_facts() {
   if (const auto reading = reading_fact(*forecast_)) info_.facts.push_back(*reading);
   info_.facts.push_back(text("Finest voxels are %.4g km wide (at most) and %.4g m high.",
                              layout_.voxel_width_m / 1000, layout_.voxel_height_m));
@@ -297,17 +301,6 @@ void NetcdfSource::state_facts(const Moment& first) {
         text("Cells of the finest domain, %.4g km wide, are drawn coarser: voxels as narrow "
              "everywhere would not fit memory; horizontal_resolution_m asks for others.",
              layout_.narrowest_cell_m / 1000));
-  const glm::dvec2 range_m = forecast_->height_range_m();
-  info_.facts.push_back(
-      text("The data reach from %.0f m to %.1f km.", range_m.x, range_m.y / 1000));
-  // Cloud in the topmost layer is cut, whatever the model had above it.
-  std::size_t cut = 0, cloudy = 0;
-  for (const DomainState& domain : first.domains()) count_cut(domain.columns, cut, cloudy);
-  if (cut > 0)
-    info_.facts.push_back(
-        text("Clouds are cut off at the top of the data, at %.1f km, in %.0f %% of "
-             "the cloudy columns.",
-             range_m.y / 1000, 100.0 * double(cut) / double(cloudy)));
   if (options_.layers == Layers::kSmooth)
     info_.assumptions.push_back(
         "Within the model's layers clouds are smoothed, each with its optical depth; the file's "

@@ -1,8 +1,10 @@
 // CF files and what is near to them: coordinates by units and attributes, grids of latitude and
 // longitude or of a map, levels of height or pressure. CF Conventions 1.11.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 #include <optional>
 
@@ -46,6 +48,7 @@ struct CfFile {
   void find_water_in(Model& model) const;
   void find_ground();
   std::vector<std::int64_t> times_ns(Model& model) const;
+  void say_air(Model& model) const;
 };
 
 void scale(std::vector<float>& values, const UnitOf& unit) {
@@ -98,7 +101,7 @@ void CfFile::find_water_in(Model& model) const {
       "the ground, h = 700 m ln(1 + column vapour in kg/m2), ice from -10 degC to -30 degC (Kiehl "
       "et "
       "al. 1998)" +
-      (air->has_vapour() ? "." : "; there is no vapour, 25 kg/m2 are taken."));
+      (air->vapour() ? "." : "; there is no vapour, 25 kg/m2 are taken."));
 }
 
 void CfFile::find_ground() {
@@ -139,7 +142,11 @@ std::vector<std::int64_t> CfFile::times_ns(Model& model) const {
     const auto at = std::ranges::find_if(file->variables(), is_axis);
     axis = at == file->variables().end() ? nullptr : &*at;
   }
-  if (axis) return read_times_ns(*file, *axis);
+  if (axis) {
+    FileTimes times = read_times(*file, *axis);
+    std::ranges::move(times.assumptions, std::back_inserter(model.assumptions));
+    return std::move(times.utc_ns);
+  }
   if (roles.time >= 0)
     if (const auto plain = plain_times_ns(*file, roles.time)) {
       model.assumptions.push_back("The times count from no date: from 1970-01-01 00:00 UTC on.");
@@ -162,6 +169,31 @@ const FileVariable* first_fraction(const DataFile& file) {
       return false;  // the cover of columns
     }
   });
+}
+
+// By the attributes that files have for it; models rarely sign.
+std::string model_name(const DataFile& file) {
+  std::string name;
+  for (const char* attribute : {"source", "title", "institution", "Conventions"})
+    if (const std::string text = file.text(attribute);
+        std::ranges::any_of(text, [](unsigned char c) { return std::isalnum(c); }))
+      name += (name.empty() ? "" : "; ") + text.substr(0, text.find('\n')).substr(0, 80);
+  return name.empty() ? "not said" : name;
+}
+
+void CfFile::say_air(Model& model) const {
+  std::string text = vertical.pressure                     ? "pressure " + vertical.pressure->name
+                     : !vertical.level_pressure_Pa.empty() ? "pressure of the levels"
+                     : vertical.pressure_Pa                ? "pressure by formula"
+                                                           : "";
+  const auto add = [&](const FileVariable* variable, const char* what) {
+    if (variable) text += (text.empty() ? "" : ", ") + (what + variable->name);
+  };
+  add(air->temperature(), "temperature ");
+  add(air->vapour(), "humidity ");
+  add(terrain, "ground ");
+  add(land, "land ");
+  if (!text.empty()) model.recognised.push_back({"air and ground", text});
 }
 
 // The variable whose dimensions stand for all: the first water that has any grid.
@@ -204,8 +236,9 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   cf->grid = cf->roles.cells >= 0 ? unstructured_grid(file, grid_file, first, cf->roles.cells,
                                                       model.assumptions, how)
                                   : cf_grid(file, cf->roles, reader, first, model.assumptions, how);
-  model.facts.push_back("Grid: " + std::to_string(cf->grid->nx()) + " x " +
-                        std::to_string(cf->grid->ny()) + " cells, " + how + ".");
+  model.recognised = {{"model", model_name(file)},
+                      {"grid", std::to_string(cf->grid->nx()) + " x " +
+                                   std::to_string(cf->grid->ny()) + " cells, " + how}};
   reader.nx = cf->grid->nx();
   reader.ny = cf->grid->ny();
   if (region) cf->restrict_to(*region, model);
@@ -233,6 +266,10 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   say(model.assumptions, cf->vertical.assumptions);
   say(model.facts, cf->vertical.facts);
   say(model.assumptions, cf->air->untested_names(cf->vertical));
+  model.recognised.push_back(
+      {"levels", std::to_string(model.nz) + " levels, " + cf->vertical.how +
+                     (cf->vertical.from_top ? ", from the top down" : ", from the ground up")});
+  cf->say_air(model);
   model.heights_change = cf->vertical.heights_change;
   model.heights_on_ellipsoid = cf->vertical.on_ellipsoid;
   model.field = [cf](const FileVariable& v, std::size_t time) { return cf->field(v, time); };

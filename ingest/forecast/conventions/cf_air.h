@@ -21,7 +21,7 @@ class CfAir {
 
   // What temperature is worked out from; null: the standard atmosphere's.
   const FileVariable* temperature() const { return temperature_; }
-  bool has_vapour() const { return vapour_; }
+  const FileVariable* vapour() const { return vapour_; }  // null: none
   // Pressure and density, once the levels' heights are known. `water` is what they are for: liquid
   // of it, and whether any of it counts per kg. `vertical` must outlive this.
   void choose_pressure(Vertical& vertical, const std::vector<WaterVariable>& water,

@@ -31,8 +31,10 @@ std::unique_ptr<Forecast> open_forecast(const OpenRequest& request) {
   if (request.files.empty())
     throw Error({"a forecast without files", "", "at least one .nc file", "none", ""});
   std::vector<NamedForecast> parts;
+  OpenRequest part = request;
+  part.is_part = request.files.size() > 1;
   for (const std::string& path : request.files)
-    parts.push_back({std::filesystem::path(path).filename().string(), open_file(path, request)});
+    parts.push_back({std::filesystem::path(path).filename().string(), open_file(path, part)});
   return nest_forecasts(std::move(parts));
 }
 

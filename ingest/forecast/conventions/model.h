@@ -62,10 +62,13 @@ struct Model {
   GeoidHeight geoid_m;                // of the sea; empty: on the ellipsoid
   std::function<ForecastGround(std::size_t time)> ground;
   std::vector<std::string> assumptions, facts;
+  std::vector<DataFacts::Recognised> recognised;  // for `info`
 };
 
 // Reads the first time that holds water data. Throws Error where none does, and on water out of
-// every cloud's range unless forced.
+// every cloud's range unless `request` forces it. A part of several files may be without water
+// data.
+struct OpenRequest;
 std::unique_ptr<Forecast> make_forecast(Model model, const OpenRequest& request);
 
 }  // namespace nepho::forecast

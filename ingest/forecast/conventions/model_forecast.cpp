@@ -11,6 +11,7 @@
 #include "forecast/conventions/model.h"
 #include "forecast/conventions/particle_sizes.h"
 #include "forecast/conventions/vertical.h"
+#include "forecast/files/time_order.h"
 #include "forecast/water/air.h"
 #include "forecast/water/assumed_water.h"
 #include "forecast/water/condensate.h"
@@ -40,7 +41,8 @@ struct Loaded {
 
 class ModelForecast : public Forecast {
  public:
-  ModelForecast(Model model, bool force) : model_(std::move(model)), force_(force) {
+  ModelForecast(Model model, const OpenRequest& request)
+      : model_(std::move(model)), force_(request.force), is_part_(request.is_part) {
     const auto say = [](std::vector<std::string>& to, const std::vector<std::string>& from) {
       to.insert(to.end(), from.begin(), from.end());
     };
@@ -57,6 +59,7 @@ class ModelForecast : public Forecast {
   std::int64_t time_origin_ns() const override { return origin_ns_; }
   const std::vector<double>& times_s() const override { return times_s_; }
   bool has_ice() const override { return has_ice_; }
+  bool has_data() const override { return has_data_; }
   std::shared_ptr<const HorizontalGrid> grid(std::size_t time) const override {
     return model_.grid(index_.at(time));
   }
@@ -66,6 +69,7 @@ class ModelForecast : public Forecast {
   double liquid_radius_m() const override { return radius_m_; }
   std::vector<std::string> assumptions() const override { return model_.assumptions; }
   std::vector<std::string> facts() const override { return model_.facts; }
+  std::vector<DataFacts::Recognised> recognised() const override { return model_.recognised; }
   std::vector<VariableBytes> bytes_read() const override {
     std::vector<VariableBytes> all;
     for (const FileVariable& v : model_.file->variables())
@@ -92,6 +96,8 @@ class ModelForecast : public Forecast {
   void open_first_water();
   void measure_heights();
   void say(const WaterStatistics& statistics);
+  void say_names();
+  void say_optics(const WaterStatistics& statistics);
   void check(const WaterStatistics& statistics) const;
   CloudSetting setting(std::size_t index, const HorizontalGrid& grid) const;
   Loaded load(std::size_t time) const;
@@ -99,34 +105,24 @@ class ModelForecast : public Forecast {
   std::vector<float> sea_level_m(std::size_t index) const;
 
   Model model_;
-  bool force_;
+  bool force_, is_part_;
   std::int64_t origin_ns_ = 0;
   std::vector<double> times_s_;
   std::vector<std::size_t> index_;  // of the file, for each of times_s_
-  bool has_ice_ = false;
+  bool has_ice_ = false, has_data_ = true;
   glm::dvec2 height_range_m_{0.0};
   double thinnest_m_ = 0, radius_m_ = 10e-6;
   mutable std::mutex mutex_;
   mutable std::optional<Loaded> first_;
 };
 
-// Ascending; of two states of one time the later in the file stays.
 void ModelForecast::order_times() {
-  index_.resize(model_.utc_ns.size());
-  std::iota(index_.begin(), index_.end(), std::size_t{0});
-  const auto ns = [&](std::size_t i) { return model_.utc_ns[i]; };
-  std::ranges::stable_sort(index_, {}, ns);
-  std::vector<std::size_t> kept;
-  for (const std::size_t i : index_) {
-    if (!kept.empty() && ns(kept.back()) == ns(i)) kept.pop_back();
-    kept.push_back(i);
-  }
-  if (kept.size() < index_.size())
-    model_.facts.push_back(std::to_string(index_.size() - kept.size()) +
-                           " times occur twice; the later state of each is used.");
-  index_ = std::move(kept);
-  origin_ns_ = ns(index_.front());
-  for (const std::size_t i : index_) times_s_.push_back(double(ns(i) - origin_ns_) / 1e9);
+  TimeOrder order = nepho::forecast::order_times(model_.utc_ns);
+  index_ = std::move(order.state);
+  std::ranges::move(order.facts, std::back_inserter(model_.facts));
+  origin_ns_ = model_.utc_ns[index_.front()];
+  for (const std::size_t i : index_)
+    times_s_.push_back(double(model_.utc_ns[i] - origin_ns_) / 1e9);
 }
 
 // Missing places, and heights that no planet's surface has (fill values nobody named), are sea.
@@ -182,6 +178,24 @@ CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& gri
   return setting;
 }
 
+// Of the values as they are in the file.
+DataVariable range_of(const WaterVariable& water, const std::vector<float>& values) {
+  DataVariable range{.name = water.variable->name,
+                     .meaning = name_of(water.species),
+                     .unit = water.variable->text("units"),
+                     .values = values.size()};
+  for (const float value : values) {
+    if (!std::isfinite(value)) {
+      ++range.missing;
+      continue;
+    }
+    range.negative += value < 0;
+    if (!(range.low <= double(value))) range.low = double(value);
+    if (!(range.high >= double(value))) range.high = double(value);
+  }
+  return range;
+}
+
 // Cells with a corner off a satellite's disc, or without corners, hold nothing.
 void clear_off_planet(const HorizontalGrid& grid, ForecastColumns& columns) {
   const std::size_t nz = std::size_t(columns.nz), nx = std::size_t(columns.nx);
@@ -231,7 +245,9 @@ Loaded ModelForecast::load(std::size_t time) const {
   columns.extinction_per_m.assign(cells * std::size_t(model_.nz), 0.0f);
   if (has_ice_) columns.ice_extinction_per_m = columns.extinction_per_m;
   const CloudSetting cloud = setting(index, *model_.grid(index));
-  std::vector<float> cloud_path(cells, 0.0f), rain_path(cells, 0.0f);
+  std::vector<float>&liquid = columns.liquid_kg_per_m2, &ice = columns.ice_kg_per_m2;
+  std::vector<float>& rain = columns.precipitation_kg_per_m2;
+  for (std::vector<float>* path : {&liquid, &ice, &rain}) path->assign(cells, 0.0f);
   std::vector<char> empty(cells, 1);
   for (const WaterVariable& water : model_.water) {
     const bool is_cloud =
@@ -239,18 +255,14 @@ Loaded ModelForecast::load(std::size_t time) const {
     const std::vector<float> values =
         water.from_fraction ? water_of_fraction(cloud.fraction, air, columns.interface_m, cells)
                             : model_.field(*water.variable, index);
+    columns.variables.push_back(range_of(water, values));
     for (std::size_t n = 0; n < values.size(); ++n)
       if (!std::isnan(values[n])) empty[n % cells] = 0;
-    add_water(water, values, air, cloud, columns, is_cloud ? cloud_path : rain_path,
-              result.statistics);
+    add_water(water, values, air, cloud, columns,
+              is_cloud ? WaterPaths{liquid, ice} : WaterPaths{rain, rain}, result.statistics);
   }
   if (std::ranges::find(empty, 1) != empty.end()) columns.without_data = std::move(empty);
   clear_off_planet(*model_.grid(index), columns);
-  WaterStatistics& s = result.statistics;
-  s.highest_cloud_kg_per_m2 = double(*std::ranges::max_element(cloud_path));
-  s.highest_precipitation_kg_per_m2 = double(*std::ranges::max_element(rain_path));
-  s.mean_cloud_kg_per_m2 =
-      std::accumulate(cloud_path.begin(), cloud_path.end(), 0.0) / double(cells);
   check(result.statistics);
   return result;
 }
@@ -284,11 +296,18 @@ void ModelForecast::open_first_water() {
       throw Error({"there is water, but no air to go with it", model_.file->path(),
                    "pressure and temperature where there is water", "missing values only", ""});
     if (time > 0)
-      model_.facts.push_back("The first " + std::to_string(time) +
-                             " times hold fill values only: they are clear.");
+      model_.facts.push_back((time == 1 ? std::string("The first time holds")
+                                        : "The first " + std::to_string(time) + " times hold") +
+                             " fill values only and " + (time == 1 ? "is" : "are") +
+                             " clear: up to " + time_text(model_.utc_ns[index_[time - 1]]) + ".");
     radius_m_ = loaded.statistics.radius_m();
     say(loaded.statistics);
     first_ = std::move(loaded);
+    return;
+  }
+  if (is_part_) {
+    has_data_ = false;
+    first_ = load(0);
     return;
   }
   std::string names;
@@ -297,6 +316,48 @@ void ModelForecast::open_first_water() {
   throw Error({"all values of the cloud water are missing",
                model_.file->path() + " [" + names + "]", "numbers",
                "fill values or NaN at all times", "write the file again"});
+}
+
+// What was read under names that no file stands behind.
+void ModelForecast::say_names() {
+  const auto note = [&](const FileVariable* variable, Quantity quantity) {
+    if (!variable) return;
+    if (std::string text = untested(*model_.file, quantity, *variable); !text.empty())
+      model_.assumptions.push_back(std::move(text));
+  };
+  for (const WaterVariable& w : model_.water)
+    if (w.row) note(w.variable, w.row->quantity);
+  note(model_.cloud_fraction, names::kCloudFraction);
+  note(model_.droplet_number, names::kDropletNumber);
+  note(model_.droplet_radius, names::kDropletRadius);
+  note(model_.ice_radius, names::kIceRadius);
+  if (const std::string wrote = model_of_file(*model_.file); !wrote.empty())
+    model_.recognised.push_back({"names", "those of " + wrote});
+}
+
+// How water became extinction: water.h has the equations.
+void ModelForecast::say_optics(const WaterStatistics& s) {
+  const auto has = [&](auto&& wanted) { return std::ranges::any_of(model_.water, wanted); };
+  auto& to = model_.recognised;
+  for (SaidOfSizes& said : said_of_sizes(model_, s)) to.push_back({said.what, std::move(said.how)});
+  if (has([](const WaterVariable& w) { return w.species == Species::kCloudWater; }))
+    to.push_back({"mean effective radius", text("%.3g um, of droplets", radius_m_ * 1e6)});
+  for (const WaterVariable& w : model_.water)
+    if (w.freezes_below_K > 0) {
+      const double all_ice_degC = w.freezes_below_K - constants::kZeroCelsius_K,
+                   all_liquid_degC = w.liquid_above_K - constants::kZeroCelsius_K;
+      to.push_back({"freezing",
+                    w.variable->name + text(" is ice below %.0f degC", all_ice_degC) +
+                        (w.liquid_above_K > w.freezes_below_K
+                             ? text(" and liquid above %.0f degC, linear between", all_liquid_degC)
+                             : "")});
+    }
+  if (has([](const WaterVariable& w) {
+        return w.species != Species::kCloudWater && w.species != Species::kCloudIce;
+      }))
+    to.push_back({"precipitation",
+                  "exponential sizes: rain by Marshall and Palmer (1948), snow by "
+                  "Houze et al. (1979), graupel by Hong and Lim (2006)"});
 }
 
 void ModelForecast::say(const WaterStatistics& s) {
@@ -308,35 +369,8 @@ void ModelForecast::say(const WaterStatistics& s) {
     model_.assumptions.push_back(
         "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to "
         "86 m above it.");
-  std::string names;
-  for (const WaterVariable& w : model_.water) {
-    names += (names.empty() ? "" : ", ") + w.variable->name + " (" + name_of(w.species) +
-             (w.freezes_below_K > 0 && w.liquid_above_K <= w.freezes_below_K
-                  ? text(", ice below %.0f degC", w.freezes_below_K - constants::kZeroCelsius_K)
-              : w.freezes_below_K > 0 ? " and ice"
-                                      : std::string()) +
-             ")";
-    if (std::string note = w.row ? untested(*model_.file, w.row->quantity, *w.variable) : "";
-        !note.empty())
-      model_.assumptions.push_back(std::move(note));
-  }
-  facts.push_back("Water: " + names + ".");
-  if (const std::string wrote = model_of_file(*model_.file); !wrote.empty())
-    facts.push_back("The names are those of " + wrote + ".");
-  for (const auto& [variable, quantity] : {std::pair{model_.cloud_fraction, names::kCloudFraction},
-                                           {model_.droplet_number, names::kDropletNumber},
-                                           {model_.droplet_radius, names::kDropletRadius},
-                                           {model_.ice_radius, names::kIceRadius}})
-    if (std::string note = variable ? untested(*model_.file, quantity, *variable) : "";
-        !note.empty())
-      model_.assumptions.push_back(std::move(note));
-  for (SaidOfSizes& said : said_of_sizes(model_, s))
-    model_.assumptions.push_back(std::move(said.how));
-  facts.push_back(text("Cloud water of a column: up to %.3g kg/m2, mean %.3g kg/m2.",
-                       s.highest_cloud_kg_per_m2, s.mean_cloud_kg_per_m2));
-  if (s.highest_precipitation_kg_per_m2 > 0)
-    facts.push_back(text("Rain, snow and graupel of a column: up to %.3g kg/m2.",
-                         s.highest_precipitation_kg_per_m2));
+  say_names();
+  say_optics(s);
   if (s.negative > 0)
     facts.push_back(std::to_string(s.negative) +
                     text(" negative water values, down to %.3g, are taken as 0.", s.lowest));
@@ -440,7 +474,7 @@ Air::State Air::at(std::size_t k, std::size_t n, std::size_t cells) const {
 
 std::unique_ptr<Forecast> make_forecast(Model model, const OpenRequest& request) {
   if (request.geoid && !model.heights_on_ellipsoid) model.geoid_m = egm96_m();
-  return std::make_unique<ModelForecast>(std::move(model), request.force);
+  return std::make_unique<ModelForecast>(std::move(model), request);
 }
 
 }  // namespace nepho::forecast

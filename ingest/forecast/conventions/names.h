@@ -18,8 +18,8 @@ using enum Quantity;
 // quantity, and for mixing ratios the word of a Basis.
 inline constexpr const char* kQuantityAttribute = "nephoscope_quantity";
 inline constexpr const char* kPerAttribute = "nephoscope_per";
-// What a reader that knows fields by numbers says of a variable: the row behind it (UserName::where of
-// a user's), and the row again where no file stands behind it.
+// What a reader that knows fields by numbers says of a variable: the row behind it (UserName::where
+// of a user's), and the row again where no file stands behind it.
 inline constexpr const char* kRowAttribute = "nephoscope_row";
 inline constexpr const char* kUntestedAttribute = "nephoscope_untested";
 

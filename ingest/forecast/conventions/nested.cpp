@@ -129,6 +129,13 @@ class NestedForecast : public Forecast {
   double liquid_radius_m() const override { return domains_.front().forecast->liquid_radius_m(); }
   std::vector<std::string> assumptions() const override;
   std::vector<std::string> facts() const override;
+  std::vector<DataFacts::Recognised> recognised() const override {
+    std::vector<DataFacts::Recognised> all;
+    for (const Domain& domain : domains_)
+      for (const DataFacts::Recognised& own : domain.forecast->recognised())
+        all.push_back({own.what, domain.name() + ": " + own.text});
+    return all;
+  }
   std::vector<VariableBytes> bytes_read() const override {
     std::vector<VariableBytes> all;
     for (const Domain& domain : domains_)
@@ -248,6 +255,9 @@ std::unique_ptr<Forecast> nest_forecasts(std::vector<NamedForecast> parts) {
     for (NamedForecast& part : domain.parts) of_domain.push_back(std::move(part.forecast));
     domain.forecast = join_forecasts(std::move(of_domain));
   }
+  if (std::ranges::none_of(domains, [](const Domain& d) { return d.forecast->has_data(); }))
+    throw Error({"all values of the cloud water are missing", domains.front().name(), "numbers",
+                 "fill values or NaN at all times", "write the files again"});
   if (domains.size() == 1) return std::move(domains.front().forecast);
   sort_finest_first(domains);
   return std::make_unique<NestedForecast>(std::move(domains));

@@ -45,8 +45,8 @@ struct UserNames {
 UserNames read_user_names(const std::string& path);
 
 // Says of the file's variables what the rows say of them, as attributes; a fact of the file tells
-// which rows it has no variable for. Dimensions that have a coordinate of another name (CM1's ni with
-// xh) take its name, with or without rows.
+// which rows it has no variable for. Dimensions that have a coordinate of another name (CM1's ni
+// with xh) take its name, with or without rows.
 void apply_names(const UserNames& names, DataFile& file);
 
 }  // namespace nepho::forecast

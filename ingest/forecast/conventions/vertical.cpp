@@ -50,7 +50,6 @@ Vertical find_vertical(const VerticalRequest& request) {
       if (way == by_thickness && !levels.pressure_Pa.empty())
         vertical.assumptions.push_back("Pressures of the axis " + file.name(request.z) +
                                        " are taken for densities: they are a standard surface's.");
-      vertical.facts.push_back("Heights: " + vertical.how + ".");
       return vertical;
     }
   const FileVariable* axis = file.find(file.name(request.z));

@@ -203,8 +203,11 @@ std::vector<std::int64_t> WrfFile::times_ns(Model& model) const {
   }
   const FileVariable* minutes = file_->find("XTIME");
   if (minutes && is_time_unit(minutes->text("units"))) {
-    times = read_times_ns(*file_, *minutes);
-    if (times.size() == count) return times;
+    FileTimes axis = read_times(*file_, *minutes);
+    if (axis.utc_ns.size() == count) {
+      std::ranges::move(axis.assumptions, std::back_inserter(model.assumptions));
+      return std::move(axis.utc_ns);
+    }
   }
   std::string start = file_->text("SIMULATION_START_DATE");
   if (start.empty()) start = file_->text("START_DATE");
@@ -257,6 +260,14 @@ Model WrfFile::model(const std::shared_ptr<WrfFile>& self, const std::optional<R
     model.assumptions.push_back(kNoPlace);
   else if (std::string fact = compare_with_map(file, *cells); !fact.empty())
     model.facts.push_back(std::move(fact));
+  model.recognised = {{"model", file.text("TITLE").empty() ? "WRF" : file.text("TITLE")},
+                      {"grid", wrf_grid_text(file, *cells)},
+                      {"levels", std::to_string(model.nz) + " levels, geopotential PH + PHB of "
+                                                            "their interfaces, from the ground up"},
+                      {"air and ground", std::string("pressure P + PB, temperature T + 300 K") +
+                                             (file.find("QVAPOR") ? ", humidity QVAPOR" : "") +
+                                             (file.find("HGT") ? ", ground HGT" : "") +
+                                             (file.find("LANDMASK") ? ", land LANDMASK" : "")}};
   if (region) self->restrict_to(*region, model);
   model.nx = self->reader_.nx;
   model.ny = self->reader_.ny;

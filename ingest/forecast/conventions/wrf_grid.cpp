@@ -109,6 +109,25 @@ WrfGrid wrf_grid(const FieldReader& whole, std::size_t time) {
                "XLAT and XLONG, or MAP_PROJ with its attributes", "neither", ""});
 }
 
+std::string wrf_grid_text(const DataFile& file, const HorizontalGrid& grid) {
+  std::string text = std::to_string(grid.nx()) + " x " + std::to_string(grid.ny()) + " cells";
+  if (const auto dx_m = file.number("DX"); dx_m && *dx_m > 0) {
+    char size[32];
+    std::snprintf(size, sizeof size, " of %.6g km", *dx_m * 1e-3);
+    text += size;
+  }
+  if (const auto kind = file.number("MAP_PROJ")) {
+    const char* name = *kind == kIdealised ? "no place"
+                       : *kind == 1        ? "Lambert conformal"
+                       : *kind == 2        ? "polar stereographic"
+                       : *kind == 3        ? "Mercator"
+                       : *kind == 6        ? "latitudes and longitudes"
+                                           : "unknown map";
+    text += std::string(", ") + name + " (MAP_PROJ " + std::to_string(int(*kind)) + ")";
+  }
+  return text + (file.find("XLAT") ? ", places XLAT and XLONG" : ", places by the attributes");
+}
+
 std::string compare_with_map(const DataFile& file, const HorizontalGrid& grid) {
   const auto map = projection_of(file);
   const auto dx = file.number("DX"), dy = file.number("DY");

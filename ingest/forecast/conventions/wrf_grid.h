@@ -22,6 +22,9 @@ struct WrfGrid {
 // these.
 WrfGrid wrf_grid(const FieldReader& whole, std::size_t time);
 
+// "48 x 48 cells of 10 km, Mercator (MAP_PROJ 3), places XLAT and XLONG".
+std::string wrf_grid_text(const DataFile& file, const HorizontalGrid& grid);
+
 // "XLAT and XLONG agree with the map of the attributes: 4.3e-06 deg." or DIFFER; "" where the file
 // lacks either.
 std::string compare_with_map(const DataFile& file, const HorizontalGrid& cells);

@@ -100,8 +100,8 @@ double WaterStatistics::radius_m() const {
 }
 
 void add_water(const WaterVariable& water, std::span<const float> values, const Air& air,
-               const CloudSetting& setting, ForecastColumns& columns,
-               std::vector<float>& path_kg_per_m2, WaterStatistics& statistics) {
+               const CloudSetting& setting, ForecastColumns& columns, const WaterPaths& paths,
+               WaterStatistics& statistics) {
   const std::size_t cells = std::size_t(columns.nx) * std::size_t(columns.ny);
   const std::size_t nz = std::size_t(columns.nz);
   for (std::size_t k = 0; k < nz; ++k)
@@ -140,7 +140,7 @@ void add_water(const WaterVariable& water, std::span<const float> values, const 
                        {n, at, state.temperature_K, state.density_kg_per_m3}, statistics);
         columns.extinction_per_m[out] += float(per_m);
         if (is_ice(species)) columns.ice_extinction_per_m[out] += float(per_m);
-        path_kg_per_m2[n] +=
+        (is_ice(species) ? paths.ice_kg_per_m2 : paths.liquid_kg_per_m2)[n] +=
             float(content * part * (double(interface_m[1]) - double(interface_m[0])));
       }
       if (content > statistics.highest_content_kg_per_m3) {

@@ -18,9 +18,6 @@ struct WaterStatistics {
   double coldest_K = 1e30, warmest_K = -1e30;  // of air with water
   // Cloud water or ice whose own radius or number is missing or no cloud's: the formula's is taken.
   std::size_t sized = 0, without_size = 0;
-  // Of columns; cloud apart from precipitation.
-  double highest_cloud_kg_per_m2 = 0, mean_cloud_kg_per_m2 = 0;
-  double highest_precipitation_kg_per_m2 = 0;
   double droplet_extinction = 0, droplet_radius_sum_m = 0;  // radius weighted by extinction
   double radius_m() const;                                  // 10 um where there are no droplets
 };
@@ -36,9 +33,14 @@ struct CloudSetting {
   std::vector<float> latitude_deg;  // [j][i]
 };
 
-// Adds one variable's water to the columns' extinction and `path_kg_per_m2` [j][i].
+// Where one variable's water is added up, [j][i]; both may be the same.
+struct WaterPaths {
+  std::vector<float>&liquid_kg_per_m2, &ice_kg_per_m2;
+};
+
+// Adds one variable's water to the columns' extinction and to the paths.
 void add_water(const WaterVariable& water, std::span<const float> values, const Air& air,
-               const CloudSetting& setting, ForecastColumns& columns,
-               std::vector<float>& path_kg_per_m2, WaterStatistics& statistics);
+               const CloudSetting& setting, ForecastColumns& columns, const WaterPaths& paths,
+               WaterStatistics& statistics);
 
 }  // namespace nepho::forecast

@@ -80,6 +80,11 @@ FieldHeader header_of(const Message& message, const forecast::UserNames& names) 
   header.instant = message.need_integer("editionNumber") == 2
                        ? !message.integer("numberOfTimeRange")
                        : header.valid_ns.has_value();
+  header.origin = "GRIB " + message.text("edition");
+  if (const std::string centre = message.text("centre"); !centre.empty())
+    header.origin += ", centre " + centre;
+  if (const std::string process = message.text("generatingProcessIdentifier"); !process.empty())
+    header.origin += ", process " + process;
   header.member = message.integer("perturbationNumber").value_or(0);
   return header;
 }

@@ -17,6 +17,7 @@ struct FieldHeader {
                                          // or its steps are months and years
   bool instant = true;                   // no mean, sum or extreme over time
   long member = 0;                       // of an ensemble
+  std::string origin;                    // "GRIB 2, centre kwbc, process 81"
 };
 FieldHeader header_of(const Message& message, const forecast::UserNames& names = {});
 

@@ -56,7 +56,8 @@ GribFile::GribFile(const std::vector<std::string>& paths, IoLock io_lock,
   values_ = std::move(dataset.values);
   facts_ = std::move(dataset.facts);
   assumptions_ = std::move(dataset.assumptions);
-  global_.attributes = {{"Conventions", "CF-1.11", {}}};
+  global_.attributes = {{"source", table_.fields.front().header.origin, {}},
+                        {"Conventions", "CF-1.11", {}}};
   bytes_ = std::vector<std::atomic<std::uint64_t>>(variables_.size());
 }
 
