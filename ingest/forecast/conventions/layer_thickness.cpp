@@ -9,13 +9,9 @@
 namespace nepho::forecast {
 namespace {
 
-const VariableNames kThickness = {{"atmosphere_layer_thickness"}, {"delz", "dz", "dzf"}};
-const VariableNames kPressureThickness = {
-    {"atmosphere_layer_thickness_expressed_as_air_pressure_difference"}, {"dpres", "delp", "dp"}};
-
-const FileVariable* find_thickness(const VerticalRequest& request, const VariableNames& names,
+const FileVariable* find_thickness(const VerticalRequest& request, Quantity wanted_name,
                                    const Dimension& wanted) {
-  return find_named(*request.reader->file, names, [&](const FileVariable& v) {
+  return find_named(*request.reader->file, wanted_name, [&](const FileVariable& v) {
     return request.reader->is_field(v, request.z) && unit_of(v, wanted).fits;
   });
 }
@@ -50,7 +46,7 @@ bool first_is_highest(const VerticalRequest& request, const FileVariable& thickn
 
 // From the ground up; FV3 counts downwards and writes lengths below 0.
 bool by_thickness(const VerticalRequest& request, Vertical& vertical) {
-  const FileVariable* found = find_thickness(request, kThickness, kLength);
+  const FileVariable* found = find_thickness(request, names::kLayerThickness, kLength);
   if (!found) return false;
   auto levels = levels_of(request, *found, request.z);
   levels->factor = unit_of(*found, kLength).factor;
@@ -87,7 +83,7 @@ bool by_thickness(const VerticalRequest& request, Vertical& vertical) {
 
 LayerPressures pressure_of_thickness(const VerticalRequest& request) {
   const FieldReader& reader = *request.reader;
-  const FileVariable* found = find_thickness(request, kPressureThickness, kPressure);
+  const FileVariable* found = find_thickness(request, names::kLayerPressureThickness, kPressure);
   const FileVariable* surface =
       find_named(*reader.file, names::kSurfacePressure,
                  [&](const auto& v) { return reader.is_surface(v) && unit_of(v, kPressure).fits; });
@@ -121,7 +117,7 @@ LayerPressures pressure_of_thickness(const VerticalRequest& request) {
 bool by_pressure_thickness(const VerticalRequest& request, Vertical& vertical) {
   LayerPressures pressures = pressure_of_thickness(request);
   if (!pressures.level_Pa) return false;
-  const FileVariable* found = find_thickness(request, kPressureThickness, kPressure);
+  const FileVariable* found = find_thickness(request, names::kLayerPressureThickness, kPressure);
   vertical.from_top = first_is_highest(request, *found, false);
   vertical.pressure_Pa = std::move(pressures.level_Pa);
   set_hydrostatic(request, vertical, *found, {}, std::move(pressures.interface_Pa));
