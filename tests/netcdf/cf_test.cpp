@@ -6,6 +6,7 @@
 #include "cf_twin.h"
 #include "forecast/conventions/horizontal.h"
 #include "forecast/water/air.h"
+#include "geo/geoid.h"
 
 namespace nepho::forecast::test {
 using nepho::test::report_accuracy;
@@ -321,6 +322,42 @@ TEST(Grid, CornersOfPointsAreTheMaps) {
     }
   report_accuracy("netcdf", "corner of a 10 km Mercator grid from its centres", worst_m, 20, "m");
   EXPECT_LT(worst_m, 20);
+}
+
+// With `geoid` egm96 layers and ground stand as much higher as the sea does.
+TEST(Cf, HeightsStandOnTheGeoid) {
+  GeoidHeight geoid;
+  try {
+    geoid = egm96_m();
+  } catch (const Error& e) {
+    GTEST_SKIP() << e.what();
+  }
+  OpenRequest request;
+  request.files = {CfTwin().write("geoid")};
+  const auto plain = netcdf::open_netcdf(request);
+  request.geoid = true;
+  const auto shifted = netcdf::open_netcdf(request);
+  for (const std::size_t time : {0u, 1u}) {
+    const ForecastColumns a = plain->columns(time), b = shifted->columns(time);
+    double worst = 0, largest = 0;
+    for (std::size_t n = 0; n < a.interface_m.size(); ++n) {
+      const auto cell = int(n / std::size_t(a.nz + 1));
+      const double sea_m =
+          geoid(plain->grid(time)->lat_lon_deg(cell % a.nx + 0.5, cell / a.nx + 0.5));
+      largest = std::max(largest, std::abs(sea_m));
+      worst =
+          std::max(worst, std::abs(double(b.interface_m[n]) - double(a.interface_m[n]) - sea_m));
+    }
+    EXPECT_GT(largest, 20);
+    EXPECT_LT(worst, 0.01);
+    EXPECT_EQ(a.extinction_per_m, b.extinction_per_m);
+  }
+  const glm::dvec2 range = shifted->height_range_m();
+  const ForecastColumns last = shifted->columns(1);
+  for (const float z : last.interface_m) {
+    EXPECT_GE(z, range.x - 0.01);
+    EXPECT_LE(z, range.y + 0.01);
+  }
 }
 
 }  // namespace

@@ -325,6 +325,29 @@ TEST(Malformed, WrfWithoutItsAir) {
   refused(path, {"lacks a variable", "PH"});
 }
 
+// Soundings of stations: half way between them there are no cells.
+TEST(Malformed, UnconnectedPoints) {
+  const auto written = [](const char* kind) {
+    const std::string path = folder() / "stations.nc";
+    NcWriter nc(path);
+    nc.dimension("station", 6);
+    nc.dimension("lev", 4);
+    if (*kind) nc.global("featureType", std::string(kind));
+    nc.variable("lev", NC_DOUBLE, {"lev"}, {100, 500, 900, 1300},
+                {{"units", std::string("m")}, {"standard_name", std::string("altitude")}});
+    nc.variable("lat", NC_DOUBLE, {"station"}, {1, 2, 3, 1, 2, 3},
+                {{"units", std::string("degrees_north")}});
+    nc.variable("lon", NC_DOUBLE, {"station"}, {1, 1, 1, 2, 2, 2},
+                {{"units", std::string("degrees_east")}});
+    nc.variable("clw", NC_FLOAT, {"lev", "station"}, std::vector<double>(24, 1e-4),
+                {{"units", std::string("kg m-3")}});
+    return path;
+  };
+  refused(written("timeSeriesProfile"),
+          {"unconnected points", "[clw]", "timeSeriesProfile", "--grid FILE", "interpolate"});
+  EXPECT_EQ(refusal(written("")), "");  // centres of cells, as models write them
+}
+
 // A chunk of a later time: what came before is read, and that time refused.
 TEST(Malformed, DamagedInTheMiddleOfARun) {
   const auto written = [](double change) {

@@ -113,7 +113,13 @@ TEST(NestFiles, PartsOfADomainAreOne) {
   // Two nests of one run, as fine as each other, at one time: two domains.
   late.first_h = 12;
   late.west_m = 230000;
-  EXPECT_EQ(open_all({early.write("twin_a"), late.write("twin_b")})->domains(0).size(), 2u);
+  const std::string a = early.write("twin_a"), b = late.write("twin_b");
+  EXPECT_EQ(open_all({a, b})->domains(0).size(), 2u);
+  // Of equals the first that is given is on top.
+  for (const auto& files : {std::vector{a, b}, std::vector{b, a}})
+    EXPECT_NE(told(*open_all(files))
+                  .find("Domains: " + std::filesystem::path(files[0]).filename().string()),
+              std::string::npos);
 }
 
 // Latitudes and longitudes of CF, the finer one without data in its corner.

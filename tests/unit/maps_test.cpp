@@ -7,6 +7,7 @@
 
 #include "accuracy_report.h"
 #include "core/error.h"
+#include "geo/geoid.h"
 #include "geo/nearest_places.h"
 #include "geo/place.h"
 #include "geo/proj_map.h"
@@ -116,6 +117,27 @@ TEST(NearestPlaces, AreTheNearest) {
     EXPECT_EQ(tree.nearest(to, 6), all);
   }
   EXPECT_EQ(tree.nearest(any(), 5000).size(), 1000u);
+}
+
+// The values that come with the model (Lemoine et al. 1998, NASA/TP-1998-206861: OUTPUT.DAT of its
+// harmonic synthesis), by PROJ's grid of 15 minutes.
+TEST(Geoid, Egm96AtItsOwnTestPoints) {
+  const struct {
+    double lat, lon, height_m;
+  } points[] = {{38.6281550, 269.7791550, -31.628}, {-14.6212170, 305.0211140, -2.969},
+                {46.8743190, 102.4487290, -43.575}, {-23.6174460, 133.8747120, 15.871},
+                {38.6254730, 359.9995000, 50.066},  {-0.4667440, 0.0023000, 17.329}};
+  GeoidHeight geoid;
+  try {
+    geoid = egm96_m();
+  } catch (const Error& e) {
+    GTEST_SKIP() << e.what();  // no PROJ, or no grid of it
+  }
+  double worst = 0;
+  for (const auto& p : points)
+    worst = std::max(worst, std::abs(geoid({p.lat, p.lon}) - p.height_m));
+  report_accuracy("grids", "EGM96 at its own test points, by a grid of 15 minutes", worst, 0.5, "m");
+  EXPECT_LT(worst, 0.5);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <functional>
-#include <optional>
+#include <glm/glm.hpp>
 
 #include "bricks/shell_chart.h"
 #include "forecast/forecast.h"

@@ -260,7 +260,7 @@ std::unique_ptr<Forecast> open_cf(std::shared_ptr<const DataFile> file,
   cf->file = std::move(file);
   std::shared_ptr<const DataFile> grid_file;
   if (!request.grid_file.empty()) grid_file = request.open_file(request.grid_file);
-  return make_forecast(model_of(cf, request.region, grid_file.get()), request.force);
+  return make_forecast(model_of(cf, request.region, grid_file.get()), request);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ struct OpenRequest {
   // Draw what is out of every cloud's range: more than 20 g/m3 of water, or 1 /m of extinction.
   bool force = false;
   std::string names_file;        // of a model that the table does not know (user_names.h); "": none
+  bool geoid = false;            // heights over the sea stand on EGM96 rather than on the ellipsoid
   std::string grid_file;         // of cells that are no rows and columns; "": the data's own
   std::optional<Region> region;  // all that is read; the whole file without one
 };

@@ -8,8 +8,11 @@
 
 #include "forecast/conventions/names.h"
 #include "forecast/forecast.h"
+#include "geo/geoid.h"
 
 namespace nepho::forecast {
+
+struct OpenRequest;
 
 enum class Vapour { kNone, kSpecific, kMixingRatio, kRelative };
 
@@ -56,12 +59,13 @@ struct Model {
   std::function<glm::dvec2(std::size_t time)> height_range_m;
   bool heights_change = true;         // with time
   bool heights_on_ellipsoid = false;  // rather than over the sea
+  GeoidHeight geoid_m;                // of the sea; empty: on the ellipsoid
   std::function<ForecastGround(std::size_t time)> ground;
   std::vector<std::string> assumptions, facts;
 };
 
 // Reads the first time that holds water data. Throws Error where none does, and on water out of
 // every cloud's range unless forced.
-std::unique_ptr<Forecast> make_forecast(Model model, bool force);
+std::unique_ptr<Forecast> make_forecast(Model model, const OpenRequest& request);
 
 }  // namespace nepho::forecast

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "forecast/conventions/convention.h"
 #include "forecast/conventions/model.h"
 #include "forecast/conventions/particle_sizes.h"
 #include "forecast/conventions/vertical.h"
@@ -95,6 +96,7 @@ class ModelForecast : public Forecast {
   CloudSetting setting(std::size_t index, const HorizontalGrid& grid) const;
   Loaded load(std::size_t time) const;
   ForecastGround ground_of(std::size_t index) const;
+  std::vector<float> sea_level_m(std::size_t index) const;
 
   Model model_;
   bool force_;
@@ -136,7 +138,30 @@ ForecastGround ModelForecast::ground_of(std::size_t index) const {
     water = water >= 0 && water <= 1 ? water
             : std::abs(water) < 2    ? std::clamp(water, 0.f, 1.f)
                                      : 1;
+  const std::vector<float> sea_m = sea_level_m(index);
+  if (sea_m.empty() || (ground.height_m.empty() && ground.water.empty())) return ground;
+  // Where there is no mask, what lies at sea level is sea: told before that moves.
+  const std::vector<float> given = ground.height_m;
+  ground.height_m.resize(sea_m.size(), 0.0f);
+  for (std::size_t n = 0; n < sea_m.size(); ++n) {
+    if (ground.water.size() < sea_m.size() && !given.empty())
+      ground.water.push_back(given[n] <= 0.5f ? 1.0f : 0.0f);
+    ground.height_m[n] += sea_m[n];
+  }
   return ground;
+}
+
+// Of each cell, over the ellipsoid; empty where that is 0.
+std::vector<float> ModelForecast::sea_level_m(std::size_t index) const {
+  std::vector<float> sea_m;
+  if (!model_.geoid_m) return sea_m;
+  const auto grid = model_.grid(index);
+  for (int j = 0; j < model_.ny; ++j)
+    for (int i = 0; i < model_.nx; ++i) {
+      const double height_m = model_.geoid_m(grid->lat_lon_deg(i + 0.5, j + 0.5));
+      sea_m.push_back(std::isfinite(height_m) ? float(height_m) : 0);
+    }
+  return sea_m;
 }
 
 CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& grid) const {
@@ -196,6 +221,13 @@ Loaded ModelForecast::load(std::size_t time) const {
   const std::size_t cells = std::size_t(model_.nx) * std::size_t(model_.ny);
   const Air air = model_.air ? model_.air(index) : Air{};
   columns.interface_m = model_.interfaces_m(index, model_.air ? &air : nullptr);
+#ifdef NEPHO_MUTANT_NO_GEOID
+  const std::vector<float> sea_m;
+#else
+  const std::vector<float> sea_m = sea_level_m(index);
+#endif
+  for (std::size_t n = 0; !sea_m.empty() && n < columns.interface_m.size(); ++n)
+    columns.interface_m[n] += sea_m[n / (std::size_t(model_.nz) + 1)];
   columns.extinction_per_m.assign(cells * std::size_t(model_.nz), 0.0f);
   if (has_ice_) columns.ice_extinction_per_m = columns.extinction_per_m;
   const CloudSetting cloud = setting(index, *model_.grid(index));
@@ -270,7 +302,9 @@ void ModelForecast::open_first_water() {
 void ModelForecast::say(const WaterStatistics& s) {
   auto& facts = model_.facts;
   // The range of EGM2008: Pavlis et al. (2012), doi:10.1029/2011JB008916.
-  if (!model_.heights_on_ellipsoid)
+  if (model_.geoid_m)
+    model_.facts.push_back("Heights stand on the geoid EGM96, and so does the sea of the data.");
+  else if (!model_.heights_on_ellipsoid)
     model_.assumptions.push_back(
         "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to "
         "86 m above it.");
@@ -345,18 +379,23 @@ void ModelForecast::measure_heights() {
     low = std::min(low, double(z[n * (nz + 1)]));
     high = std::max(high, double(z[n * (nz + 1) + nz]));
   }
+  // Of other times the sea's lowest and highest place are added.
+  const std::vector<float> sea_m = sea_level_m(index_[first_->time]);
+  const auto sea = sea_m.empty() ? std::pair{0.0, 0.0}
+                                 : std::pair{double(*std::ranges::min_element(sea_m)),
+                                             double(*std::ranges::max_element(sea_m))};
   for (std::size_t time = 0; model_.heights_change && time < index_.size(); ++time) {
     if (time == first_->time) continue;
     if (model_.height_range_m) {
       const glm::dvec2 range = model_.height_range_m(index_[time]);
-      low = std::min(low, range.x);
-      high = std::max(high, range.y);
+      low = std::min(low, range.x + sea.first);
+      high = std::max(high, range.y + sea.second);
       continue;
     }
     const std::vector<float> other = model_.interfaces_m(index_[time], nullptr);
     for (std::size_t n = 0; n < cells; ++n) {
-      low = std::min(low, double(other[n * (nz + 1)]));
-      high = std::max(high, double(other[n * (nz + 1) + nz]));
+      low = std::min(low, double(other[n * (nz + 1)]) + sea.first);
+      high = std::max(high, double(other[n * (nz + 1) + nz]) + sea.second);
     }
   }
   if (!(low > kLowest_m && high < kHighest_m))
@@ -399,8 +438,9 @@ Air::State Air::at(std::size_t k, std::size_t n, std::size_t cells) const {
   return state;
 }
 
-std::unique_ptr<Forecast> make_forecast(Model model, bool force) {
-  return std::make_unique<ModelForecast>(std::move(model), force);
+std::unique_ptr<Forecast> make_forecast(Model model, const OpenRequest& request) {
+  if (request.geoid && !model.heights_on_ellipsoid) model.geoid_m = egm96_m();
+  return std::make_unique<ModelForecast>(std::move(model), request.force);
 }
 
 }  // namespace nepho::forecast

@@ -20,6 +20,7 @@ constexpr double kSamePlace_rad = 1e-6;  // 6 m: coordinates in float
 struct Domain {
   std::vector<NamedForecast> parts;
   double width_m = 0;
+  std::size_t given = 0;               // which of them on the command line
   std::unique_ptr<Forecast> forecast;  // of the joined parts
   std::string name() const {
     return parts.size() == 1 ? parts.front().name : parts.front().name + " and others";
@@ -217,6 +218,19 @@ std::vector<std::string> NestedForecast::facts() const {
   return all;
 }
 
+// Of equals, as wide within 2 %, the first file is on top.
+void sort_finest_first(std::vector<Domain>& domains) {
+  for (std::size_t n = 0; n < domains.size(); ++n) domains[n].given = n;
+  std::ranges::sort(domains, {}, &Domain::width_m);
+  for (auto first = domains.begin(); first != domains.end();) {
+    const auto end = std::find_if(first, domains.end(), [&](const Domain& domain) {
+      return domain.width_m > first->width_m * (1 + kSameWidth);
+    });
+    std::ranges::sort(first, end, {}, &Domain::given);
+    first = end;
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<Forecast> nest_forecasts(std::vector<NamedForecast> parts) {
@@ -235,8 +249,7 @@ std::unique_ptr<Forecast> nest_forecasts(std::vector<NamedForecast> parts) {
     domain.forecast = join_forecasts(std::move(of_domain));
   }
   if (domains.size() == 1) return std::move(domains.front().forecast);
-  // Of equals the first file is on top.
-  std::ranges::stable_sort(domains, {}, &Domain::width_m);
+  sort_finest_first(domains);
   return std::make_unique<NestedForecast>(std::move(domains));
 }
 

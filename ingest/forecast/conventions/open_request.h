@@ -7,6 +7,7 @@ namespace nepho::forecast {
 
 // What a module of forecasts is asked for, whatever the format. Parameters:
 //   force   1 draws what is out of every cloud's range, and is else refused (0)
+//   geoid   egm96: heights over the sea, and the sea, stand on the geoid; none: on the ellipsoid
 //   grid    a file with the places of the cells (triangles, Voronoi's cells); the data's own
 //   names   a file of names of a model that the table does not know (docs/names.md); none
 //   region  "SOUTH,WEST,NORTH,EAST" in degrees: only cells there are read (the whole file)

@@ -281,7 +281,7 @@ int recognise(const DataFile& file) {
 std::unique_ptr<Forecast> open_wrf(std::shared_ptr<const DataFile> file,
                                    const OpenRequest& request) {
   return make_forecast(WrfFile::model(std::make_shared<WrfFile>(std::move(file)), request.region),
-                       request.force);
+                       request);
 }
 
 }  // namespace
