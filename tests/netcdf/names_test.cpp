@@ -150,13 +150,13 @@ TEST(ModelNames, MarksAreTrue) {
       made.insert(key(*row));
     }
   }
-  // Written by the tests of WRF's own convention.
-  for (const char* row : {"cloud_ice qice", "rain qrain", "snow qsnow", "graupel qgraup",
-                          "droplet_number qncloud", "droplet_radius re_cloud", "ice_radius re_ice"})
-    made.insert(std::string("WRF: ") + row);
-  // By those of FV3's levels.
-  for (const char* row : {"layer_thickness delz", "layer_pressure_thickness dpres"})
-    made.insert(std::string(kAnyModel) + ": " + row);
+  // Written by the tests of WRF's own convention, and of FV3's layers.
+  for (const char* row :
+       {"WRF: cloud_ice qice", "WRF: rain qrain", "WRF: snow qsnow", "WRF: graupel qgraup",
+        "WRF: droplet_number qncloud", "WRF: droplet_radius re_cloud", "WRF: ice_radius re_ice",
+        "GFS: layer_thickness delz", "GFS: layer_pressure_thickness dpres", "GFS: terrain hgtsfc",
+        "GFS: surface_pressure pressfc"})
+    made.insert(row);
   for (const NameRow& row : name_table())
     if (row.evidence == Evidence::kMade) marked.insert(key(row));
   for (const std::string& row : marked) EXPECT_TRUE(made.contains(row)) << row << " is marked only";

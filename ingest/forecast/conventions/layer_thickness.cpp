@@ -9,9 +9,9 @@
 namespace nepho::forecast {
 namespace {
 
-const FileVariable* find_thickness(const VerticalRequest& request, Quantity quantity,
+const FileVariable* find_thickness(const VerticalRequest& request, Quantity wanted_name,
                                    const Dimension& wanted) {
-  return find_named(*request.reader->file, quantity, [&](const FileVariable& v) {
+  return find_named(*request.reader->file, wanted_name, [&](const FileVariable& v) {
     return request.reader->is_field(v, request.z) && unit_of(v, wanted).fits;
   });
 }

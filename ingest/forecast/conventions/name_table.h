@@ -37,8 +37,8 @@ enum class Quantity {
   kFullLevelHeight,
   kGeopotentialHeight,
   kGeopotential,
-  kLayerThickness,
-  kLayerPressureThickness,
+  kLayerThickness,          // in height
+  kLayerPressureThickness,  // in pressure
   kLatitude,
   kLongitude,
   kOther  // a name that looks like one of the above, and is not
