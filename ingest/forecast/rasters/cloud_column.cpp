@@ -60,8 +60,8 @@ Depths depths_of(const ColumnValues& v, const RasterOptions& options, bool ice_t
     (ice_top ? paths.ice : paths.liquid) = water * (ice_top ? ice_m2_per_kg : liquid_m2_per_kg);
   }
   const double by_paths = paths.liquid + paths.ice;
-  const bool any_path = has(v.liquid_path_kg_per_m2) || has(v.ice_path_kg_per_m2) ||
-                        has(v.water_path_kg_per_m2);
+  const bool any_path =
+      has(v.liquid_path_kg_per_m2) || has(v.ice_path_kg_per_m2) || has(v.water_path_kg_per_m2);
   double depth = by_paths;
   if (has(v.optical_depth))
     depth = std::max(v.optical_depth, 0.0) * cover;
@@ -75,10 +75,9 @@ double thickness_of(const Depths& depth, const RasterOptions& options, double li
                     double ice_m2_per_kg) {
   if (options.thickness_m) return *options.thickness_m;
   const double ice_m = depth.ice / ice_m2_per_kg / options.ice_content_kg_per_m3;
-  const double liquid_m =
-      options.profile == Profile::kAdiabatic
-          ? adiabatic_thickness_m(depth.liquid, options.droplets_per_m3)
-          : depth.liquid / liquid_m2_per_kg / options.liquid_content_kg_per_m3;
+  const double liquid_m = options.profile == Profile::kAdiabatic
+                              ? adiabatic_thickness_m(depth.liquid, options.droplets_per_m3)
+                              : depth.liquid / liquid_m2_per_kg / options.liquid_content_kg_per_m3;
   return std::max(ice_m + liquid_m, kLeastThickness_m);
 }
 

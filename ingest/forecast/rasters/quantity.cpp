@@ -85,7 +85,8 @@ constexpr std::array kNames = std::to_array<Name>(
      {kBaseHeight, "cloud_base_height"},
      {kBaseHeight, "cbh"},
      {kEffectiveRadius, "effective_radius_of_cloud_condensed_water_particles_at_cloud_top"},
-     {kEffectiveRadius, "effective_radius_of_cloud_liquid_water_particle_at_liquid_water_cloud_top"},
+     {kEffectiveRadius,
+      "effective_radius_of_cloud_liquid_water_particle_at_liquid_water_cloud_top"},
      {kEffectiveRadius, "cloud_effective_radius"},
      {kEffectiveRadius, "cloud_particle_effective_radius"},
      {kEffectiveRadius, "cer"},
@@ -121,7 +122,8 @@ std::optional<Quantity> quantity_named(const std::string& name) {
 
 std::string quantity_words() {
   std::string text;
-  for (const QuantityKind& kind : kKinds) text += (text.empty() ? "" : ", ") + std::string(kind.word);
+  for (const QuantityKind& kind : kKinds)
+    text += (text.empty() ? "" : ", ") + std::string(kind.word);
   return text;
 }
 
@@ -140,8 +142,8 @@ Unit unit_for(Quantity quantity, const std::string& unit, const std::string& whe
     throw Error({"the raster's unit is not known", where, expected, "\"" + unit + "\"", cure});
   }
   if (parsed.dimension != kind.dimension)
-    throw Error({"the raster's unit is of another quantity", where, expected, "\"" + unit + "\"",
-                 cure});
+    throw Error(
+        {"the raster's unit is of another quantity", where, expected, "\"" + unit + "\"", cure});
 #ifdef NEPHO_MUTANT_RASTER_UNITS
   parsed.factor *= parsed.dimension == kPath ? 1000 : 1;
 #endif

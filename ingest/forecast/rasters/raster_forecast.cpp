@@ -72,9 +72,10 @@ Lacks RasterForecast::column(std::size_t cell, CloudColumn& column) const {
     return field ? double((*field)[cell]) : double(NAN);
   };
   using enum Quantity;
-  ColumnValues v{value(kOpticalDepth), value(kLiquidPath),  value(kIcePath), value(kWaterPath),
-                 value(kCover),        value(kTopHeight),   value(kTopPressure),
-                 value(kTopTemperature), value(kBaseHeight), value(kEffectiveRadius)};
+  ColumnValues v{value(kOpticalDepth),   value(kLiquidPath),     value(kIcePath),
+                 value(kWaterPath),      value(kCover),          value(kTopHeight),
+                 value(kTopPressure),    value(kTopTemperature), value(kBaseHeight),
+                 value(kEffectiveRadius)};
   // A stated depth is that of columns of which something is known.
   const bool known = given(kCover) || !std::isnan(v.top_m) || !std::isnan(v.top_Pa) ||
                      !std::isnan(v.top_K) || !std::isnan(v.base_m);
@@ -159,19 +160,17 @@ ForecastColumns RasterForecast::columns(std::size_t) const {
   CloudColumn cloud;
   for (std::size_t cell = 0; cell < cells(); ++cell) {
     float* z = &columns.interface_m[cell * (nz + 1)];
-    const bool cloudy =
-        column(cell, cloud) == Lacks::kNothing && cloud.optical_depth > 0;
+    const bool cloudy = column(cell, cloud) == Lacks::kNothing && cloud.optical_depth > 0;
     const double base_m = cloudy ? cloud.base_m : floor_m_ + (ceiling_m_ - floor_m_) / 3;
     const double top_m = cloudy ? cloud.top_m : floor_m_ + (ceiling_m_ - floor_m_) / 1.5;
     z[0] = float(floor_m_ - 1);
-    for (int k = 0; k <= layers; ++k)
-      z[k + 1] = float(base_m + (top_m - base_m) * k / layers);
+    for (int k = 0; k <= layers; ++k) z[k + 1] = float(base_m + (top_m - base_m) * k / layers);
     z[nz] = float(ceiling_m_);
     if (!cloudy) continue;
     const Profile profile = cloud.ice_share > 0.5 ? Profile::kUniform : options_.profile;
     for (int k = 0; k < layers; ++k) {
-      const double share = depth_below(profile, double(k + 1) / layers) -
-                           depth_below(profile, double(k) / layers);
+      const double share =
+          depth_below(profile, double(k + 1) / layers) - depth_below(profile, double(k) / layers);
       const double thick_m = double(z[k + 2]) - double(z[k + 1]);
       const double per_m = cloud.optical_depth * share / thick_m;
       columns.extinction_per_m[cell * nz + std::size_t(k) + 1] = float(per_m);
@@ -189,16 +188,18 @@ void RasterForecast::state_depth() {
   auto& said = raster_.assumptions;
   const bool paths = given(kLiquidPath) || given(kIcePath) || given(kWaterPath);
   if (!given(kOpticalDepth) && paths)
-    said.push_back(text("Optical depths follow from water paths by extinction per mass: droplets "
-                        "of %.3g um, ice of %.3g um%s.",
-                        options_.liquid_radius_m * 1e6, options_.ice_radius_m * 1e6,
-                        given(kEffectiveRadius) ? ", or the raster's effective radius" : ""));
+    said.push_back(
+        text("Optical depths follow from water paths by extinction per mass: droplets "
+             "of %.3g um, ice of %.3g um%s.",
+             options_.liquid_radius_m * 1e6, options_.ice_radius_m * 1e6,
+             given(kEffectiveRadius) ? ", or the raster's effective radius" : ""));
   if (!given(kOpticalDepth) && !paths)
-    said.push_back(text("Each cloudy column has the stated optical depth of %.4g.",
-                        *options_.optical_depth));
+    said.push_back(
+        text("Each cloudy column has the stated optical depth of %.4g.", *options_.optical_depth));
   if (given(kCover) && (given(kOpticalDepth) || !paths))
-    said.push_back("Optical depths are those of the cloudy part of a cell: its mean is depth times "
-                   "cover.");
+    said.push_back(
+        "Optical depths are those of the cloudy part of a cell: its mean is depth times "
+        "cover.");
   if (options_.phase == RasterPhase::kByTemperature && !(given(kLiquidPath) || given(kIcePath)))
     said.push_back(text("Clouds are ice where their tops are below %.0f degC (%s), else liquid.",
                         kIceBelow_K - 273.15,
@@ -223,19 +224,21 @@ void RasterForecast::state_heights() {
   else if (options_.thickness_m)
     said.push_back(text("All clouds are %.0f m thick, as stated.", *options_.thickness_m));
   else if (!given(kBaseHeight) && options_.profile == Profile::kAdiabatic)
-    said.push_back(text("Bases follow from the optical depth of adiabatic clouds of %.3g droplets "
-                        "per cm3 (Brenguier et al. 2000).",
-                        options_.droplets_per_m3 / 1e6));
+    said.push_back(
+        text("Bases follow from the optical depth of adiabatic clouds of %.3g droplets "
+             "per cm3 (Brenguier et al. 2000).",
+             options_.droplets_per_m3 / 1e6));
   else if (!given(kBaseHeight))
-    said.push_back(text("Bases follow from water path over water content, %.3g g/m3 of liquid and "
-                        "%.3g of ice (Hutchison 2002).",
-                        options_.liquid_content_kg_per_m3 * 1e3,
-                        options_.ice_content_kg_per_m3 * 1e3));
+    said.push_back(
+        text("Bases follow from water path over water content, %.3g g/m3 of liquid and "
+             "%.3g of ice (Hutchison 2002).",
+             options_.liquid_content_kg_per_m3 * 1e3, options_.ice_content_kg_per_m3 * 1e3));
   said.push_back(options_.profile == Profile::kUniform
                      ? "Extinction is the same from base to top."
                      : "Extinction goes as the height over the base to the power 2/3.");
   said.push_back(
-      "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to 86 m "
+      "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to 86 "
+      "m "
       "above it.");
 }
 
@@ -252,9 +255,10 @@ void RasterForecast::state() {
       names += text(" (%.3g %% missing)", 100 * double(missing) / double(field.size()));
   }
   facts.push_back("Raster: " + names + ".");
-  facts.push_back(text("Optical depth of a column: up to %.4g, mean %.4g; cloud in %.3g %% of the "
-                       "cells.",
-                       deepest_, mean_depth_, 100 * double(cloudy_) / double(cells())));
+  facts.push_back(
+      text("Optical depth of a column: up to %.4g, mean %.4g; cloud in %.3g %% of the "
+           "cells.",
+           deepest_, mean_depth_, 100 * double(cloudy_) / double(cells())));
   if (without_top_ > 0)
     facts.push_back(std::to_string(without_top_) +
                     " columns have optical depth and no height: no cloud there.");

@@ -50,8 +50,7 @@ RasterOptions raster_options(Parameters& parameters) {
   options.profile = parameters.choice("cloud_profile", {"uniform", "adiabatic"}) == "adiabatic"
                         ? Profile::kAdiabatic
                         : Profile::kUniform;
-  const std::string phase =
-      parameters.choice("cloud_phase", {"by_temperature", "liquid", "ice"});
+  const std::string phase = parameters.choice("cloud_phase", {"by_temperature", "liquid", "ice"});
   options.phase = phase == "liquid" ? RasterPhase::kLiquid
                   : phase == "ice"  ? RasterPhase::kIce
                                     : RasterPhase::kByTemperature;
