@@ -172,7 +172,10 @@ ForecastColumns RasterForecast::columns(std::size_t) const {
       const double share =
           depth_below(profile, double(k + 1) / layers) - depth_below(profile, double(k) / layers);
       const double thick_m = double(z[k + 2]) - double(z[k + 1]);
-      const double per_m = cloud.optical_depth * share / thick_m;
+      double per_m = cloud.optical_depth * share / thick_m;
+#ifdef NEPHO_MUTANT_RASTER_DEPTH
+      per_m /= 2;
+#endif
       columns.extinction_per_m[cell * nz + std::size_t(k) + 1] = float(per_m);
       if (has_ice_)
         columns.ice_extinction_per_m[cell * nz + std::size_t(k) + 1] =

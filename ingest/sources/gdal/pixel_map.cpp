@@ -43,6 +43,9 @@ class PixelMap : public MapFormula {
 
  private:
   glm::dvec2 coordinates(glm::dvec2 pixel) const {
+#ifdef NEPHO_MUTANT_RASTER_SHIFTED
+    pixel += 1.0;
+#endif
     return {t_[0] + t_[1] * pixel.x + t_[2] * pixel.y, t_[3] + t_[4] * pixel.x + t_[5] * pixel.y};
   }
 
@@ -88,7 +91,8 @@ std::shared_ptr<const HorizontalGrid> grid_of(const RasterPlace& place, int coar
     const auto& t = place.transform;
     std::vector<double> longitude = edges(t[0] * to_deg, t[1] * to_deg, place.nx, coarse);
     std::vector<double> latitude = edges(t[3] * to_deg, t[5] * to_deg, place.ny, coarse);
-    return forecast::axes_grid(middles(latitude), middles(longitude), where,
+    std::vector<double> rows = middles(latitude), columns = middles(longitude);
+    return forecast::axes_grid(std::move(rows), std::move(columns), where,
                                {std::move(latitude), std::move(longitude)});
   }
   return forecast::map_edges_grid(edges(0, 1, place.nx, coarse), edges(0, 1, place.ny, coarse),

@@ -120,6 +120,9 @@ Terrain open_terrain(const TerrainRequest& request) {
                  "the unit may be wrong, or a value that means nothing is not declared as nodata"});
   const RasterPlace place = reduced(file.place().part(window), nx, ny);
   const auto pixels = pixel_map(place, file.path());
+#ifdef NEPHO_MUTANT_RASTER_UPSIDE_DOWN
+  std::ranges::reverse(ground.height_m);
+#endif
   terrain.map = forecast::ground_map(grid_of(place, 1, file.path()), ground,
                                      [&](glm::dvec2 at) { return pixels->map_m(at); });
   terrain.facts.push_back(
