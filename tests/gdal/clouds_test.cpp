@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "forecast/rasters/cloud_column.h"
 #include "made_raster.h"
+#include "optical_depths.h"
 #include "synthetic_forecast.h"
 
 #include "remapped.h"
@@ -45,18 +46,12 @@ struct GdalClouds : testing::Test {
 
 // Optical depth of each column.
 std::vector<double> depths(const ForecastColumns& c) {
-  std::vector<double> all;
   const std::size_t nz = std::size_t(c.nz);
-  for (std::size_t cell = 0; cell * nz < c.extinction_per_m.size(); ++cell) {
-    double sum = 0;
-    for (std::size_t k = 0; k < nz; ++k) {
-      const float* z = &c.interface_m[cell * (nz + 1) + k];
-      EXPECT_GT(z[1], z[0]);
-      sum += double(c.extinction_per_m[cell * nz + k]) * (double(z[1]) - double(z[0]));
-    }
-    all.push_back(sum);
+  for (std::size_t n = 0; n < c.extinction_per_m.size(); ++n) {
+    const float* z = &c.interface_m[n / nz * (nz + 1) + n % nz];
+    EXPECT_GT(z[1], z[0]);
   }
-  return all;
+  return nepho::test::optical_depths(c);
 }
 
 // Height range that holds extinction.
@@ -158,9 +153,9 @@ TEST_F(GdalClouds, PackedValuesAndNodata) {
   MadeRaster raster;
   raster.type = GDT_Int16;
   std::vector<double> stored = raster.constant(450);
-  stored[5] = -999;
+  stored[5] = 20000;
   stored[6] = -50;
-  raster.bands = {{"COT", "1", stored, -999, 0.02, 1}, top_band(raster.constant(3000))};
+  raster.bands = {{"COT", "1", stored, 20000, 0.02, 1}, top_band(raster.constant(3000))};
   const std::vector<double> depth = depths(open({raster})->columns(0));
   EXPECT_NEAR(depth[0], 10, 1e-5);
   EXPECT_EQ(depth[5], 0);

@@ -12,6 +12,7 @@ OpenRequest open_request(const SourceRequest& request, Parameters& parameters, c
   OpenRequest open;
   open.files.assign(request.files, request.files + request.file_count);
   open.force = parameters.integer("force", 0, 0, 1) == 1;
+  open.raster = raster_options(parameters);
   open.grid_file = parameters.word("grid", "");
   if (const std::string region = parameters.word("region", ""); !region.empty())
     open.region = parse_region(region, parameters.where("region"));

@@ -9,7 +9,7 @@ namespace nepho::forecast {
 //   force   1 draws what is out of every cloud's range, and is else refused (0)
 //   grid    a file with the places of the cells (triangles, Voronoi's cells); the data's own
 //   region  "SOUTH,WEST,NORTH,EAST" in degrees: only cells there are read (the whole file)
-// `format` names the module in errors. Throws Error.
+// and those of raster_options(). `format` names the module in errors. Throws Error.
 OpenRequest open_request(const SourceRequest& request, Parameters& parameters, const char* format);
 
 }  // namespace nepho::forecast

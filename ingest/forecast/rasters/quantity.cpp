@@ -33,6 +33,7 @@ struct Name {
 
 // CF standard names (table 85), then short names of products: CM SAF, CERES, MODIS, VIIRS, ABI,
 // SEVIRI, models' column fields.
+// Water in kg/kg on levels has the same names (cloud_water): the unit tells them apart.
 constexpr std::array kNames = std::to_array<Name>(
     {{kOpticalDepth, "atmosphere_optical_thickness_due_to_cloud"},
      {kOpticalDepth, "cloud_optical_depth"},
@@ -61,6 +62,7 @@ constexpr std::array kNames = std::to_array<Name>(
      {kWaterPath, "atmosphere_mass_content_of_cloud_condensed_water"},
      {kWaterPath, "atmosphere_cloud_condensed_water_content"},
      {kWaterPath, "cloud_water_path"},
+     {kWaterPath, "cloud_water"},
      {kWaterPath, "cwp"},
      {kWaterPath, "clwvi"},
      {kCover, "cloud_area_fraction"},

@@ -47,6 +47,8 @@ RasterOptions raster_options(Parameters& parameters) {
   options.top_m = within(parameters, "cloud_top_m", -400, 40000);
   options.thickness_m = within(parameters, "cloud_thickness_m", 1, 30000);
   options.optical_depth = within(parameters, "cloud_optical_depth", 1e-6, 1000);
+  options.stated = !options.bands.empty() || options.base_m || options.top_m ||
+                   options.thickness_m || options.optical_depth;
   options.profile = parameters.choice("cloud_profile", {"uniform", "adiabatic"}) == "adiabatic"
                         ? Profile::kAdiabatic
                         : Profile::kUniform;

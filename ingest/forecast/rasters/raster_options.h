@@ -43,6 +43,7 @@ struct RasterOptions {
   double liquid_radius_m = 10e-6, ice_radius_m = 30e-6;
   double liquid_content_kg_per_m3 = 0.3e-3, ice_content_kg_per_m3 = 0.05e-3;
   double droplets_per_m3 = 1e8;
+  bool stated = false;  // bands, heights or a depth: of no use to clouds on levels
 };
 
 // Throws Error on what is no quantity, and on base, top and thickness together.

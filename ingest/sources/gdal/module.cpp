@@ -54,8 +54,7 @@ std::unique_ptr<BrickSource> open_source(const SourceRequest& request) {
   if (!open.grid_file.empty())
     throw Error(
         {"a raster has its own grid", parameters.where("grid"), "none", open.grid_file, ""});
-  const CloudRequest clouds{std::move(open.files), forecast::raster_options(parameters),
-                            open.region, open.force};
+  const CloudRequest clouds{std::move(open.files), std::move(open.raster), open.region, open.force};
   return forecast::make_source(request.volume_name ? request.volume_name : "", open_clouds(clouds),
                                parameters);
 }
