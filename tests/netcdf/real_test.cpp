@@ -210,7 +210,7 @@ TEST(RealFiles, ColumnsAreDrawnWithWhatIsStated) {
   print(*goes);
   EXPECT_TRUE(says(*goes, "cloud in 61.7 % of the cells"));  // 92568 of 150000
   EXPECT_NEAR(goes->height_range_m().y, 15430 + 100, 1);
-  EXPECT_EQ(goes->time_origin_ns() / 1000000000, 1508965116 + 0);
+  EXPECT_EQ(goes->time_origin_ns() / 1000000000, 1508964818);
   request.files = {std::string(NEPHO_TEST_REAL_DATA) + "/raster/gfs_1deg_cloudwater_20120515.nc"};
   request.raster = {};
   request.raster.top_m = 4000;

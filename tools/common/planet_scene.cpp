@@ -51,7 +51,7 @@ class Framing {
  public:
   Framing(OpenedScene& opened, const Ellipsoid& body) : opened_(opened), scene_(opened.scene) {
     ground_.body = body;
-    if (opened.terrain) ground_.maps.push_back(opened.terrain->info().surface);
+    if (opened.terrain) ground_.maps.push_back(opened.terrain);
     for (std::size_t v = 0; v < opened.sources.size(); ++v) {
       if (info(v).on_planet) weather_.push_back(v);
       if (info(v).surface && !opened.terrain) ground_.maps.push_back(info(v).surface);

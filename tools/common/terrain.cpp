@@ -16,9 +16,11 @@ namespace nepho {
 namespace {
 
 constexpr double kAround_m = 200e3;
+constexpr int kMostNodes = 4096;                         // an axis
 constexpr double kWholePlanet_rad = glm::radians(30.0);  // clouds within: a part of it
 
-// The cap that holds clouds, eye and target; null for all of the planet.
+// The cap that holds the clouds; null for all of the planet. Not eye and target: they are known
+// when a picture is drawn again, and it would see another part.
 std::optional<Cap> seen(const OpenedScene& opened, const Ellipsoid& body) {
   CloudMap map;
   for (const auto& source : opened.sources) {
@@ -28,16 +30,6 @@ std::optional<Cap> seen(const OpenedScene& opened, const Ellipsoid& body) {
   }
   if (map.empty()) return std::nullopt;
   Cap cap = map.extent();
-  const CameraSpec& camera = opened.scene.camera;
-  std::vector<glm::dvec3> points;
-  for (const auto& point : {camera.eye_m, camera.target_m})
-    if (point && glm::length(*point) > 1) points.push_back(*point);
-  if (camera.stand)
-    points.push_back(ecef_m(body, {camera.stand->latitude_deg, camera.stand->longitude_deg, 0}));
-  for (const glm::dvec3& point : points)
-    cap.radius_rad =
-        std::max(cap.radius_rad,
-                 std::acos(std::clamp(glm::dot(glm::normalize(point), cap.direction), -1.0, 1.0)));
   cap.radius_rad += kAround_m / body.equatorial_m;
   if (cap.radius_rad > kWholePlanet_rad) return std::nullopt;
   return cap;
@@ -76,7 +68,65 @@ void check_planet(const OpenedScene& opened) {
   if (!stands) refuse("no cloud stands on the planet", "a place (scene key place)", "none");
 }
 
+// Without data all is sea.
+std::shared_ptr<SurfaceMap> filled(const SurfaceMap& fine) {
+  auto map = std::make_shared<SurfaceMap>(fine);
+  for (std::size_t n = 0; n < map->height_m.size(); ++n)
+    if (std::isnan(map->height_m[n])) {
+      map->height_m[n] = 0;
+      map->water[n] = 1;
+    }
+  return map;
+}
+
 }  // namespace
+
+std::shared_ptr<SurfaceMap> joined_ground(const SurfaceMap& fine, const SurfaceMap& own) {
+  if (own.around || own.nx < 2 || own.ny < 2) return nullptr;
+  auto map = std::make_shared<SurfaceMap>();
+  map->axes = own.axes;
+  glm::dvec2 low = own.low_rad,
+             high = own.low_rad + own.step_rad * glm::dvec2(own.nx - 1, own.ny - 1);
+  const auto direction = [](const SurfaceMap& of, double i, double j) {
+    const glm::dvec2 a = of.low_rad + of.step_rad * glm::dvec2(i, j);
+    return of.axes *
+           glm::dvec3(std::cos(a.y) * std::cos(a.x), std::cos(a.y) * std::sin(a.x), std::sin(a.y));
+  };
+  constexpr int kPoints = 16;
+  for (int n = 0; n <= kPoints; ++n) {
+    const double i = double(fine.nx - 1) * n / kPoints, j = double(fine.ny - 1) * n / kPoints;
+    for (const glm::dvec3& u : {direction(fine, i, 0), direction(fine, i, fine.ny - 1),
+                                direction(fine, 0, j), direction(fine, fine.nx - 1, j)}) {
+      const glm::dvec3 v = glm::transpose(own.axes) * u;
+      const glm::dvec2 at = {std::atan2(v.y, v.x), std::asin(std::clamp(v.z, -1.0, 1.0))};
+      low = glm::min(low, at);
+      high = glm::max(high, at);
+    }
+  }
+  const glm::dvec2 nodes = glm::ceil((high - low) / fine.step_rad) + 1.0;
+  if (nodes.x > kMostNodes || nodes.y > kMostNodes) return nullptr;
+  map->nx = int(nodes.x);
+  map->ny = int(nodes.y);
+  map->low_rad = low;
+  map->step_rad = (high - low) / (nodes - 1.0);
+  map->height_m.assign(std::size_t(map->nx) * std::size_t(map->ny), 0.0f);
+  map->water.assign(map->height_m.size(), 1.0f);
+  for (int j = 0; j < map->ny; ++j)
+    for (int i = 0; i < map->nx; ++i) {
+      const glm::dvec3 u = direction(*map, i, j);
+      const std::size_t n = std::size_t(j) * std::size_t(map->nx) + std::size_t(i);
+      for (const SurfaceMap* from : {&fine, &own}) {
+        const auto place = place_on(*from, u);
+        if (!place) continue;
+        const double height_m = place->value(from->height_m);
+        if (std::isnan(height_m)) continue;
+        map->height_m[n] = float(height_m);
+        map->water[n] = float(place->value(from->water));
+        break;
+      }
+    }
+  return map;
+}
 
 void open_terrain(const SourceHost& host, OpenedScene& opened) {
   if (!opened.scene.terrain) return;
@@ -87,14 +137,26 @@ void open_terrain(const SourceHost& host, OpenedScene& opened) {
   volume.source = "gdal";
   volume.files = {opened.scene.terrain->file};
   volume.where = opened.scene.terrain->where;
-  volume.parameters = {{"use", "", 0, "terrain", true, volume.where}};
+  volume.parameters = {{"use", "", 0, "terrain", true, volume.where},
+                       {"gaps", "", 0, "nan", true, volume.where}};
   if (const auto cap = seen(opened, body))
     volume.parameters.push_back({"region", "", 0, region_of(*cap, body), true, volume.where});
-  opened.terrain = open_volume(host, volume);
-  const VolumeInfo& info = opened.terrain->info();
-  opened.request.terrain = info.surface.get();
-  for (const std::string& text : info.facts) opened.assumptions.push_back("terrain: " + text);
-  for (const std::string& text : info.assumptions) opened.assumptions.push_back("terrain: " + text);
+  const std::unique_ptr<BrickSource> source = open_volume(host, volume);
+  const VolumeInfo& info = source->info();
+  const auto say = [&](const std::string& text) {
+    opened.assumptions.push_back("terrain: " + text);
+  };
+  for (const auto& texts : {info.facts, info.assumptions})
+    for (const std::string& text : texts) say(text);
+  std::shared_ptr<SurfaceMap> map;
+  for (const auto& other : opened.sources)
+    if (!map && other->info().surface) map = joined_ground(*info.surface, *other->info().surface);
+  say(map ? "Around it, and where it has no data, lies the ground of the clouds' data; sea is "
+            "where "
+            "the terrain is at or below 0.5 m."
+          : "Sea is where it is at or below 0.5 m, where it has no data, and around it.");
+  opened.terrain = map ? map : filled(*info.surface);
+  opened.request.terrain = opened.terrain.get();
 }
 
 }  // namespace nepho

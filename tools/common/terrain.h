@@ -8,8 +8,12 @@ namespace nepho {
 
 // The scene's terrain: read where the clouds are, and 200 km around them (all of it under clouds of
 // the whole planet, and under none), in place of the data's own ground, which stays where the
-// terrain has no data. Sets the request's terrain and the source that holds it; says what was
-// assumed. Throws Error: unreadable, or nothing that stands on the Earth.
+// terrain has no data. Sets the scene's terrain and the request's; says what was assumed. Throws
+// Error: unreadable, or nothing that stands on the Earth.
 void open_terrain(const SourceHost& host, OpenedScene& opened);
+
+// `fine`, and the data's `own` ground around it and where its heights are NaN, on nodes as fine as
+// those of `fine` over both. Null where that takes too many of them, or `own` is a whole planet's.
+std::shared_ptr<SurfaceMap> joined_ground(const SurfaceMap& fine, const SurfaceMap& own);
 
 }  // namespace nepho

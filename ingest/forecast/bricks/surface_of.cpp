@@ -155,7 +155,7 @@ void fill_row(SurfaceMap& map, int j, const Piece& piece, const Ellipsoid& body,
   }
 }
 
-std::shared_ptr<const SurfaceMap> map_of(const std::vector<Piece>& pieces) {
+std::shared_ptr<const SurfaceMap> map_of(const std::vector<Piece>& pieces, float outside_m = 0) {
   const Ellipsoid body = Ellipsoid::wgs84();
   const GridSearch& search = pieces.front().search;
   auto map = std::make_shared<SurfaceMap>();
@@ -173,7 +173,7 @@ std::shared_ptr<const SurfaceMap> map_of(const std::vector<Piece>& pieces) {
   map->ny = count(map->step_rad.y) + 1;
   map->step_rad /= glm::dvec2(map->around ? map->nx : map->nx - 1, map->ny - 1);
   const auto nodes = std::size_t(map->nx) * std::size_t(map->ny);
-  map->height_m.assign(nodes, 0.0f);
+  map->height_m.assign(nodes, outside_m);
   map->water.assign(nodes, 1.0f);
   std::vector<char> set(nodes, 0);
   tbb::parallel_for(0, map->ny, [&](int j) {
@@ -193,10 +193,11 @@ GroundMap ground_map(const Forecast& forecast) {
 
 std::shared_ptr<const SurfaceMap> ground_map(std::shared_ptr<const HorizontalGrid> grid,
                                              ForecastGround ground,
-                                             std::function<glm::dvec2(glm::dvec2)> cell_of) {
+                                             std::function<glm::dvec2(glm::dvec2)> cell_of,
+                                             float outside_m) {
   std::vector<Piece> pieces;
   pieces.push_back({GridSearch(std::move(grid)), std::move(ground), std::move(cell_of)});
-  return map_of(pieces);
+  return map_of(pieces, outside_m);
 }
 
 }  // namespace nepho::forecast

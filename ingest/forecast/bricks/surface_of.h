@@ -18,9 +18,10 @@ struct GroundMap {
 };
 GroundMap ground_map(const Forecast& forecast);
 // The same of one grid whose inverse is known: `cell_of` takes latitude and longitude (deg) to x in
-// [0, nx], y in [0, ny], or to what is not in there. Thread-safe.
+// [0, nx], y in [0, ny], or to what is not in there. Thread-safe. NaN heights stay, and nodes
+// outside the grid have `outside_m`.
 std::shared_ptr<const SurfaceMap> ground_map(
     std::shared_ptr<const HorizontalGrid> grid, ForecastGround ground,
-    std::function<glm::dvec2(glm::dvec2 lat_lon_deg)> cell_of);
+    std::function<glm::dvec2(glm::dvec2 lat_lon_deg)> cell_of, float outside_m = 0);
 
 }  // namespace nepho::forecast

@@ -42,14 +42,17 @@ class TerrainSource final : public BrickSource {
 };
 
 // Parameters: those of open_request(), raster_options() and make_source(); and
-//   use  clouds | terrain: heights of ground (terrain.h), a source without clouds
+//   use   clouds | terrain: heights of ground (terrain.h), a source without clouds
+//   gaps  of terrain: sea | nan
 std::unique_ptr<BrickSource> open_source(const SourceRequest& request) {
   Parameters parameters(request);
   const bool terrain = parameters.choice("use", {"clouds", "terrain"}) == "terrain";
   forecast::OpenRequest open = forecast::open_request(request, parameters, "gdal");
   if (terrain) {
+    TerrainRequest wanted{open.files.front(), open.region};
+    wanted.keep_gaps = parameters.choice("gaps", {"sea", "nan"}) == "nan";
     parameters.finish();
-    return std::make_unique<TerrainSource>(open_terrain({open.files.front(), open.region}));
+    return std::make_unique<TerrainSource>(open_terrain(wanted));
   }
   if (!open.grid_file.empty())
     throw Error(

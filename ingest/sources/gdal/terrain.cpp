@@ -104,7 +104,7 @@ Terrain open_terrain(const TerrainRequest& request) {
   for (float& height : ground.height_m) {
     if (std::isnan(height)) {
       ++missing;
-      height = 0;
+      if (!request.keep_gaps) height = 0;
       continue;
     }
     height = float(double(height) * unit_m);
@@ -123,18 +123,20 @@ Terrain open_terrain(const TerrainRequest& request) {
 #ifdef NEPHO_MUTANT_RASTER_UPSIDE_DOWN
   std::ranges::reverse(ground.height_m);
 #endif
-  terrain.map = forecast::ground_map(grid_of(place, 1, file.path()), ground,
-                                     [&](glm::dvec2 at) { return pixels->map_m(at); });
+  terrain.map = forecast::ground_map(
+      grid_of(place, 1, file.path()), ground, [&](glm::dvec2 at) { return pixels->map_m(at); },
+      request.keep_gaps ? NAN : 0.0f);
   terrain.facts.push_back(
       text("Terrain: %d x %d of %d x %d pixels, read as %d x %d means, %.0f to %.0f m; %d "
            "overviews.",
            window.nx, window.ny, file.place().nx, file.place().ny, nx, ny, double(lowest),
            double(highest), file.overviews(0)));
-  if (missing > 0)
+  if (missing > 0 && !request.keep_gaps)
     terrain.assumptions.push_back(
         text("%.3g %% of the terrain have no data: sea level is taken there.",
              100 * double(missing) / double(ground.height_m.size())));
-  terrain.assumptions.push_back("Sea is where the terrain is at or below 0.5 m, and around it.");
+  if (!request.keep_gaps)
+    terrain.assumptions.push_back("Sea is where the terrain is at or below 0.5 m, and around it.");
   terrain.assumptions.push_back(
       "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to 86 "
       "m "
