@@ -16,7 +16,9 @@ namespace nepho {
 namespace {
 
 constexpr double kAround_m = 200e3;
-constexpr int kMostNodes = 4096;                         // an axis
+constexpr int kMostNodes = 4096;  // an axis
+constexpr double kFall = 1.732;    // of the ground into gaps, m per m: tan 60 degrees
+constexpr int kMostRim = 200;      // nodes
 constexpr double kWholePlanet_rad = glm::radians(30.0);  // clouds within: a part of it
 
 // The cap that holds the clouds; null for all of the planet. Not eye and target: they are known
@@ -68,17 +70,6 @@ void check_planet(const OpenedScene& opened) {
   if (!stands) refuse("no cloud stands on the planet", "a place (scene key place)", "none");
 }
 
-// Without data all is sea.
-std::shared_ptr<SurfaceMap> filled(const SurfaceMap& fine) {
-  auto map = std::make_shared<SurfaceMap>(fine);
-  for (std::size_t n = 0; n < map->height_m.size(); ++n)
-    if (std::isnan(map->height_m[n])) {
-      map->height_m[n] = 0;
-      map->water[n] = 1;
-    }
-  return map;
-}
-
 }  // namespace
 
 std::shared_ptr<SurfaceMap> joined_ground(const SurfaceMap& fine, const SurfaceMap& own) {
@@ -128,6 +119,53 @@ std::shared_ptr<SurfaceMap> joined_ground(const SurfaceMap& fine, const SurfaceM
   return map;
 }
 
+std::shared_ptr<SurfaceMap> filled_ground(const SurfaceMap& fine) {
+  auto map = std::make_shared<SurfaceMap>(fine);
+  const double north_m = Ellipsoid::wgs84().polar_m * fine.step_rad.y;
+  const double fall_m = kFall * north_m;  // a node further
+  float highest_m = 0;
+  for (const float height_m : fine.height_m)
+    if (height_m > highest_m) highest_m = height_m;
+  const int room = std::max(0, kMostNodes - std::max(fine.nx, fine.ny)) / 2;
+  const int rim = fine.around ? 0 : std::min({int(double(highest_m) / fall_m) + 2, kMostRim, room});
+  map->nx += 2 * rim;
+  map->ny += 2 * rim;
+  map->low_rad -= double(rim) * fine.step_rad;
+  const auto at = [&](int i, int j) {
+    return std::size_t(j) * std::size_t(map->nx) + std::size_t(i);
+  };
+  map->height_m.assign(std::size_t(map->nx) * std::size_t(map->ny), NAN);
+  map->water.assign(map->height_m.size(), 1.0f);
+  for (int j = 0; j < fine.ny; ++j)
+    for (int i = 0; i < fine.nx; ++i) {
+      const std::size_t n = std::size_t(j) * std::size_t(fine.nx) + std::size_t(i);
+      map->height_m[at(i + rim, j + rim)] = fine.height_m[n];
+      map->water[at(i + rim, j + rim)] = fine.water[n];
+    }
+  // Two sweeps, each taking over from the neighbours that it has been to.
+  std::vector<char> gap(map->height_m.size());
+  for (std::size_t n = 0; n < gap.size(); ++n)
+    if ((gap[n] = std::isnan(map->height_m[n]))) map->height_m[n] = 0;
+  const auto take = [&](int i, int j, int from_i, int from_j, double far) {
+    if (map->around) from_i = (from_i + map->nx) % map->nx;
+    if (from_i < 0 || from_j < 0 || from_i >= map->nx || from_j >= map->ny) return;
+    float& here_m = map->height_m[at(i, j)];
+    here_m = std::max(here_m, float(double(map->height_m[at(from_i, from_j)]) - far * fall_m));
+  };
+  const auto sweep = [&](int i, int j, int back) {
+    if (!gap[at(i, j)]) return;
+    take(i, j, i - back, j, 1);
+    for (const int side : {-1, 0, 1}) take(i, j, i + side, j - back, std::hypot(side, 1));
+  };
+  for (int j = 0; j < map->ny; ++j)
+    for (int i = 0; i < map->nx; ++i) sweep(i, j, 1);
+  for (int j = map->ny - 1; j >= 0; --j)
+    for (int i = map->nx - 1; i >= 0; --i) sweep(i, j, -1);
+  for (std::size_t n = 0; n < gap.size(); ++n)
+    if (gap[n]) map->water[n] = map->height_m[n] <= 0.5f ? 1.0f : 0.0f;
+  return map;
+}
+
 void open_terrain(const SourceHost& host, OpenedScene& opened) {
   if (!opened.scene.terrain) return;
   check_planet(opened);
@@ -154,8 +192,9 @@ void open_terrain(const SourceHost& host, OpenedScene& opened) {
   say(map ? "Around it, and where it has no data, lies the ground of the clouds' data; sea is "
             "where "
             "the terrain is at or below 0.5 m."
-          : "Sea is where it is at or below 0.5 m, where it has no data, and around it.");
-  opened.terrain = map ? map : filled(*info.surface);
+          : "Sea is where it is at or below 0.5 m; where it has no data, and around it, the ground "
+            "falls to the sea at 60 degrees.");
+  opened.terrain = map ? map : filled_ground(*info.surface);
   opened.request.terrain = opened.terrain.get();
 }
 

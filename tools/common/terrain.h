@@ -14,6 +14,10 @@ void open_terrain(const SourceHost& host, OpenedScene& opened);
 
 // `fine`, and the data's `own` ground around it and where its heights are NaN, on nodes as fine as
 // those of `fine` over both. Null where that takes too many of them, or `own` is a whole planet's.
+//
+// Without such ground, filled_ground(): where heights are NaN, and on a rim around them all, the
+// ground falls to the sea at 60 degrees. Cliffs of one node are steeper than the renderers take.
+std::shared_ptr<SurfaceMap> filled_ground(const SurfaceMap& fine);
 std::shared_ptr<SurfaceMap> joined_ground(const SurfaceMap& fine, const SurfaceMap& own);
 
 }  // namespace nepho
