@@ -64,7 +64,8 @@ struct GdalTerrain : testing::Test {
 double mountain_m(double lat, double lon) {
   const double phi = lat * M_PI / 180, lambda = lon * M_PI / 180;
   return 1500 + 600 * std::sin(300 * std::cos(phi) * std::cos(lambda)) +
-         400 * std::cos(300 * std::cos(phi) * std::sin(lambda)) + 300 * std::sin(300 * std::sin(phi));
+         400 * std::cos(300 * std::cos(phi) * std::sin(lambda)) +
+         300 * std::sin(300 * std::sin(phi));
 }
 MadeRaster mountains(const char* system, std::array<double, 6> transform, int n = 120) {
   MadeRaster raster;
@@ -100,8 +101,8 @@ TEST_F(GdalTerrain, HeightsAreInTheirPlace) {
         EXPECT_EQ(ground.water, 0);
       }
   }
-  nepho::test::report_accuracy("gdal", "terrain of 1 km pixels, waves of 130 km and 600 m",
-                               worst_m, 2.5, "m");
+  nepho::test::report_accuracy("gdal", "terrain of 1 km pixels, waves of 130 km and 600 m", worst_m,
+                               2.5, "m");
 }
 
 TEST_F(GdalTerrain, WholePlanetsGoAround) {

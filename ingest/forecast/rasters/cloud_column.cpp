@@ -74,7 +74,10 @@ Depths depths_of(const ColumnValues& v, const RasterOptions& options, bool ice_t
 double thickness_of(const Depths& depth, const RasterOptions& options, double liquid_m2_per_kg,
                     double ice_m2_per_kg) {
   if (options.thickness_m) return *options.thickness_m;
-  const double ice_m = depth.ice / ice_m2_per_kg / options.ice_content_kg_per_m3;
+  double ice_m = depth.ice / ice_m2_per_kg / options.ice_content_kg_per_m3;
+#ifdef NEPHO_MUTANT_ICE_AS_WATER
+  ice_m *= options.ice_content_kg_per_m3 / options.liquid_content_kg_per_m3;
+#endif
   const double liquid_m = options.profile == Profile::kAdiabatic
                               ? adiabatic_thickness_m(depth.liquid, options.droplets_per_m3)
                               : depth.liquid / liquid_m2_per_kg / options.liquid_content_kg_per_m3;
