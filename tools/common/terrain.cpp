@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kAround_m = 200e3;
 constexpr int kMostNodes = 4096;  // an axis
-constexpr double kFall = 1.732;    // of the ground into gaps, m per m: tan 60 degrees
-constexpr int kMostRim = 200;      // nodes
+constexpr double kFall = 1.732;   // of the ground into gaps, m per m: tan 60 degrees
+constexpr int kMostRim = 200;     // nodes
 constexpr double kWholePlanet_rad = glm::radians(30.0);  // clouds within: a part of it
 
 // The cap that holds the clouds; null for all of the planet. Not eye and target: they are known
@@ -186,15 +186,20 @@ void open_terrain(const SourceHost& host, OpenedScene& opened) {
   };
   for (const auto& texts : {info.facts, info.assumptions})
     for (const std::string& text : texts) say(text);
-  std::shared_ptr<SurfaceMap> map;
+  const SurfaceMap* own = nullptr;
   for (const auto& other : opened.sources)
-    if (!map && other->info().surface) map = joined_ground(*info.surface, *other->info().surface);
-  say(map ? "Around it, and where it has no data, lies the ground of the clouds' data; sea is "
-            "where "
-            "the terrain is at or below 0.5 m."
-          : "Sea is where it is at or below 0.5 m; where it has no data, and around it, the ground "
-            "falls to the sea at 60 degrees.");
-  opened.terrain = map ? map : filled_ground(*info.surface);
+    if (!own) own = other->info().surface.get();
+  std::shared_ptr<SurfaceMap> map = own ? joined_ground(*info.surface, *own) : nullptr;
+  if (map) {
+    say("Around it, and where it has no data, lies the ground of the clouds' data; sea is where it "
+        "is at or below 0.5 m.");
+  } else {
+    say("Sea is where it is at or below 0.5 m; where it has no data, and around it, the ground "
+        "falls to the sea at 60 degrees.");
+    if (own) say("The ground of the clouds' data is left out: it is too wide for nodes so fine.");
+    map = filled_ground(*info.surface);
+  }
+  opened.terrain = std::move(map);
   opened.request.terrain = opened.terrain.get();
 }
 
