@@ -18,8 +18,8 @@
 namespace nepho::gdal::test {
 namespace {
 
+using forecast::CloudQuantity;
 using forecast::ForecastColumns;
-using forecast::Quantity;
 
 struct GdalClouds : testing::Test {
   nepho::test::TestFolder folder{"gdal_clouds"};

@@ -16,7 +16,7 @@ namespace {
 
 // A unit that is missing or not known is asked for later; one of another kind says that the
 // variable is something else of the same name.
-bool may_be(Quantity quantity, const std::string& unit) {
+bool may_be(CloudQuantity quantity, const std::string& unit) {
   try {
     return unit.empty() || parse_unit(unit).dimension == kind_of(quantity).dimension;
   } catch (const Error&) {
@@ -24,7 +24,7 @@ bool may_be(Quantity quantity, const std::string& unit) {
   }
 }
 
-std::optional<Quantity> told(const FileVariable& variable) {
+std::optional<CloudQuantity> told(const FileVariable& variable) {
   if (!variable.numeric || variable.dimensions.size() < 2) return std::nullopt;
   for (const std::string& name : {variable.text("standard_name"), variable.name})
     if (const auto quantity = quantity_named(name);
@@ -33,14 +33,20 @@ std::optional<Quantity> told(const FileVariable& variable) {
   return std::nullopt;
 }
 
-// Of two extents beside those of one index.
+// Of rows and columns, and times at most.
 bool is_plane(const DataFile& file, const FileVariable& variable) {
-  return std::ranges::count_if(variable.dimensions, [&](int d) { return file.size(d) > 1; }) <= 3;
+  const auto is_time = [&](int d) {
+    const FileVariable* axis = file.find(file.name(d));
+    return (axis && is_time_unit(axis->text("units"))) || file.name(d) == "time" ||
+           file.name(d) == "Time";
+  };
+  return std::ranges::count_if(variable.dimensions,
+                               [&](int d) { return file.size(d) > 1 && !is_time(d); }) <= 2;
 }
 
 // The first of each quantity, depths and paths before heights.
-std::vector<std::pair<Quantity, const FileVariable*>> planes(const DataFile& file) {
-  std::vector<std::pair<Quantity, const FileVariable*>> all;
+std::vector<std::pair<CloudQuantity, const FileVariable*>> planes(const DataFile& file) {
+  std::vector<std::pair<CloudQuantity, const FileVariable*>> all;
   for (const FileVariable& variable : file.variables()) {
     const auto quantity = told(variable);
     if (!quantity || !is_plane(file, variable)) continue;

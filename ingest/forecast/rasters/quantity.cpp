@@ -9,7 +9,7 @@
 namespace nepho::forecast {
 namespace {
 
-using enum Quantity;
+using enum CloudQuantity;
 constexpr Dimension kPath{.m = -2, .kg = 1};
 
 // Optical depths of models reach some hundreds; 50 kg/m2 is twice what a hailstorm holds.
@@ -27,7 +27,7 @@ constexpr std::array<QuantityKind, 10> kKinds = {{
 }};
 
 struct Name {
-  Quantity quantity;
+  CloudQuantity quantity;
   const char* name;
 };
 
@@ -109,11 +109,11 @@ std::string folded(const std::string& name) {
 
 }  // namespace
 
-const QuantityKind& kind_of(Quantity quantity) {
+const QuantityKind& kind_of(CloudQuantity quantity) {
   return *std::ranges::find(kKinds, quantity, &QuantityKind::quantity);
 }
 
-std::optional<Quantity> quantity_named(const std::string& name) {
+std::optional<CloudQuantity> quantity_named(const std::string& name) {
   const std::string wanted = folded(name);
   for (const QuantityKind& kind : kKinds)
     if (wanted == kind.word) return kind.quantity;
@@ -129,7 +129,7 @@ std::string quantity_words() {
   return text;
 }
 
-Unit unit_for(Quantity quantity, const std::string& unit, const std::string& where,
+Unit unit_for(CloudQuantity quantity, const std::string& unit, const std::string& where,
               const std::string& cure) {
   const QuantityKind& kind = kind_of(quantity);
   const std::string expected = std::string(kind.word) + " in a unit such as " + kind.usual_unit;

@@ -48,7 +48,7 @@ class RasterForecast : public Forecast {
   std::size_t cells() const {
     return std::size_t(raster_.grid->nx()) * std::size_t(raster_.grid->ny());
   }
-  bool given(Quantity quantity) const { return fields_[std::size_t(quantity)] != nullptr; }
+  bool given(CloudQuantity quantity) const { return fields_[std::size_t(quantity)] != nullptr; }
   Lacks column(std::size_t cell, CloudColumn& column) const;
   void require_meaning() const;
   void measure(bool force);
@@ -58,7 +58,7 @@ class RasterForecast : public Forecast {
 
   Raster raster_;
   RasterOptions options_;
-  const std::vector<float>* fields_[std::size_t(Quantity::kEffectiveRadius) + 1] = {};
+  const std::vector<float>* fields_[std::size_t(CloudQuantity::kEffectiveRadius) + 1] = {};
   std::vector<double> times_s_{0.0};
   bool has_ice_ = false;
   double floor_m_ = 0, ceiling_m_ = 0, thinnest_m_ = 0, radius_m_ = 10e-6;
@@ -67,11 +67,11 @@ class RasterForecast : public Forecast {
 };
 
 Lacks RasterForecast::column(std::size_t cell, CloudColumn& column) const {
-  const auto value = [&](Quantity quantity) {
+  const auto value = [&](CloudQuantity quantity) {
     const std::vector<float>* field = fields_[std::size_t(quantity)];
     return field ? double((*field)[cell]) : double(NAN);
   };
-  using enum Quantity;
+  using enum CloudQuantity;
   ColumnValues v{value(kOpticalDepth),   value(kLiquidPath),     value(kIcePath),
                  value(kWaterPath),      value(kCover),          value(kTopHeight),
                  value(kTopPressure),    value(kTopTemperature), value(kBaseHeight),
@@ -89,7 +89,7 @@ Lacks RasterForecast::column(std::size_t cell, CloudColumn& column) const {
 
 // What must be stated, in one message.
 void RasterForecast::require_meaning() const {
-  using enum Quantity;
+  using enum CloudQuantity;
   std::string found;
   for (const auto& [quantity, field] : raster_.fields)
     found += (found.empty() ? "" : ", ") + std::string(kind_of(quantity).word);
@@ -187,7 +187,7 @@ ForecastColumns RasterForecast::columns(std::size_t) const {
 }
 
 void RasterForecast::state_depth() {
-  using enum Quantity;
+  using enum CloudQuantity;
   auto& said = raster_.assumptions;
   const bool paths = given(kLiquidPath) || given(kIcePath) || given(kWaterPath);
   if (!given(kOpticalDepth) && paths)
@@ -211,7 +211,7 @@ void RasterForecast::state_depth() {
 }
 
 void RasterForecast::state_heights() {
-  using enum Quantity;
+  using enum CloudQuantity;
   auto& said = raster_.assumptions;
   if (options_.top_m)
     said.push_back(text("All clouds end at the stated top, %.0f m.", *options_.top_m));

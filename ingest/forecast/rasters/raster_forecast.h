@@ -14,8 +14,8 @@ namespace nepho::forecast {
 struct Raster {
   std::string path;  // of the first file, for errors
   std::shared_ptr<const HorizontalGrid> grid;
-  std::map<Quantity, std::vector<float>> fields;  // SI, [j * nx + i]; NaN: nothing there
-  std::int64_t utc_ns = 0;                        // 0: not known
+  std::map<CloudQuantity, std::vector<float>> fields;  // SI, [j * nx + i]; NaN: nothing there
+  std::int64_t utc_ns = 0;                             // 0: not known
   std::vector<std::string> assumptions, facts;
 };
 

@@ -33,7 +33,7 @@ enum class RasterPhase { kByTemperature, kLiquid, kIce };
 //   droplets_per_m3          of an adiabatic cloud (1e8)
 struct RasterOptions {
   struct Band {
-    std::optional<Quantity> quantity;  // empty: left out
+    std::optional<CloudQuantity> quantity;  // empty: left out
     std::string unit;
   };
   std::vector<Band> bands;  // empty: what the files say

@@ -7,7 +7,7 @@
 namespace nepho::gdal {
 namespace {
 
-using forecast::Quantity;
+using forecast::CloudQuantity;
 using forecast::RasterOptions;
 
 constexpr const char* kCure =
@@ -31,14 +31,14 @@ std::string listed(const std::vector<std::unique_ptr<RasterFile>>& files) {
   return text;
 }
 
-std::optional<Quantity> told(const Band& band) {
+std::optional<CloudQuantity> told(const Band& band) {
   for (const std::string& name : band.names)
     if (const auto quantity = forecast::quantity_named(name)) return quantity;
   return std::nullopt;
 }
 
 void add(std::vector<CloudBand>& all, const std::vector<std::unique_ptr<RasterFile>>& files,
-         std::size_t file, int band, Quantity quantity, const std::string& unit) {
+         std::size_t file, int band, CloudQuantity quantity, const std::string& unit) {
   const std::string place = where(*files[file], band);
   const auto same = std::ranges::find(all, quantity, &CloudBand::quantity);
   if (same != all.end())

@@ -12,7 +12,7 @@ namespace nepho::gdal {
 struct CloudBand {
   std::size_t file;
   int band;
-  forecast::Quantity quantity;
+  forecast::CloudQuantity quantity;
   Unit unit;
 };
 

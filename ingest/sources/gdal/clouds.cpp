@@ -11,9 +11,9 @@ namespace nepho::gdal {
 namespace {
 
 using forecast::CellWindow;
+using forecast::CloudQuantity;
 using forecast::HorizontalGrid;
-using forecast::Quantity;
-using Fields = std::map<Quantity, std::vector<float>>;
+using Fields = std::map<CloudQuantity, std::vector<float>>;
 
 // Part of one file, in blocks.
 struct Layer {
@@ -24,8 +24,8 @@ struct Layer {
   int nx() const { return (place.nx + coarse - 1) / coarse; }
 };
 
-bool is_mean(Quantity quantity) {
-  using enum Quantity;
+bool is_mean(CloudQuantity quantity) {
+  using enum CloudQuantity;
   return quantity == kLiquidPath || quantity == kIcePath || quantity == kWaterPath ||
          quantity == kCover;
 }
@@ -38,11 +38,11 @@ class Block {
 
   void add(std::size_t n) {
     ++count_;
-    const auto value = [&](Quantity quantity) {
+    const auto value = [&](CloudQuantity quantity) {
       const auto at = pixels_.find(quantity);
       return at == pixels_.end() ? 1.0 : std::max(0.0, double(at->second[n]));  // NaN: 0
     };
-    using enum Quantity;
+    using enum CloudQuantity;
     const double cover = value(kCover);
     double depth = cover;
     if (pixels_.contains(kOpticalDepth))
@@ -65,12 +65,12 @@ class Block {
       if (!missing) sum.value += weight * here;
     }
   }
-  float mean(Quantity quantity) const {
+  float mean(CloudQuantity quantity) const {
     const auto at = sums_.find(quantity);
     if (at == sums_.end() || !at->second.any) return NAN;
     const Sum& sum = at->second;
-    const bool whole = is_mean(quantity) ||
-                       (quantity == Quantity::kOpticalDepth && !pixels_.contains(Quantity::kCover));
+    const bool whole = is_mean(quantity) || (quantity == CloudQuantity::kOpticalDepth &&
+                                             !pixels_.contains(CloudQuantity::kCover));
     const double weight = whole ? count_ : sum.weight;
     return weight > 0 ? float(sum.value / weight) : NAN;
   }
@@ -81,7 +81,7 @@ class Block {
     bool any = false;
   };
   const Fields& pixels_;
-  std::map<Quantity, Sum> sums_;
+  std::map<CloudQuantity, Sum> sums_;
   double count_ = 0;
 };
 
