@@ -166,6 +166,12 @@ struct PictureTarget {
   explicit operator bool() const { return error || frame_ms; }
 };
 
+// Heights of ground in a file, in place of what the volumes' data say of it.
+struct TerrainSpec {
+  std::string file;
+  std::string where = {};  // file, line, column and field, for messages
+};
+
 struct Scene {
   std::string name;
   // Where local metres (x east, y north, z up) are counted from; absent: the first volume's place.
@@ -177,6 +183,7 @@ struct Scene {
   std::optional<Planet>
       planet;  // absent: the Earth, where a source's volume is on_planet and no sky is given
   bool no_planet = false;  // nor that one
+  std::optional<TerrainSpec> terrain;
   RenderSettings render;
   PictureTarget target;               // for which its tolerance and budget are chosen
   std::optional<double> exposure_ev;  // absent: from the picture

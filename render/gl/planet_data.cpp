@@ -88,6 +88,7 @@ class PlanetBuilder {
     data.cloud_asymmetry = 0.85f;
     if (!request_.volumes.empty())
       data.cloud_asymmetry = float(phase_bulk(request_.volumes[0].phase).asymmetry[1]);
+    scene_.surface = request_.terrain;
     for (const RenderVolume& volume : request_.volumes)
       if (!scene_.surface) scene_.surface = volume.source->info().surface.get();
     if (scene_.surface && scene_.surface->nx > 1 && scene_.surface->ny > 1)

@@ -18,7 +18,7 @@ double node_height_m(const SurfaceMap& map, int i, int j) {
 }  // namespace
 
 const SurfaceMap* surface_of(const RenderRequest& request) {
-  const SurfaceMap* map = nullptr;
+  const SurfaceMap* map = request.terrain;
   for (const RenderVolume& volume : request.volumes)
     if (!map) map = volume.source->info().surface.get();
   if (!map || map->nx < 2 || map->ny < 2) return nullptr;

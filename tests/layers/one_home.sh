@@ -22,6 +22,7 @@ check() {  # check FOLDERS FIND_REGEX INCLUDE_REGEX, FOLDERS separated by |
 check 'ingest/sources/openvdb|tests/openvdb' 'find_package\(OpenVDB' 'openvdb/'
 check 'ingest/sources/netcdf|tests/netcdf' 'find_package\(netCDF' '(netcdf|hdf5)\.h'
 check 'ingest/sources/grib|tests/grib' 'find_package\(eccodes' 'eccodes\.h'
+check 'ingest/sources/gdal|tests/gdal' 'find_path\(NEPHO_GDAL' '(gdal|ogr|cpl)_[a-z_]*\.h'
 check 'tools/image/oiio' 'find_(package|path)\(.*OpenImageIO' 'OpenImageIO/'
 check 'ingest/geo|tests' 'find_package\(GeographicLib' 'GeographicLib/'
 check 'ingest/geo' 'find_package\(PROJ' 'proj\.h'

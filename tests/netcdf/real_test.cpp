@@ -336,6 +336,31 @@ TEST(RealFiles, IconTriangles) {
   EXPECT_LT(worst, 0.01);
 }
 
+// Heights of a satellite's clouds, and a model's vertical sums, with what they do not say.
+TEST(RealFiles, ColumnsAreDrawnWithWhatIsStated) {
+  OpenRequest request;
+  request.files = {std::string(NEPHO_TEST_REAL_DATA) +
+                   "/raster/goes16_abi_l2_acha_conus_20171025_2056.nc"};
+  request.raster.optical_depth = 10;
+  request.raster.stated = true;
+  const auto goes = netcdf::open_netcdf(request);
+  print(*goes);
+  EXPECT_TRUE(says(*goes, "cloud in 61.7 % of the cells"));  // 92568 of 150000
+  EXPECT_NEAR(goes->height_range_m().y, 15430 + 100, 1);
+  EXPECT_EQ(goes->time_origin_ns() / 1000000000, 1508964818);
+  request.files = {std::string(NEPHO_TEST_REAL_DATA) + "/raster/gfs_1deg_cloudwater_20120515.nc"};
+  request.raster = {};
+  request.raster.top_m = 4000;
+  request.raster.stated = true;
+  const auto gfs = netcdf::open_netcdf(request);
+  print(*gfs);
+  EXPECT_TRUE(gfs->grid(0)->around());
+  // 3.17 kg/m2 of droplets of 10 um, 157 m2/kg.
+  const std::vector<float> extinction = gfs->columns(0).extinction_per_m;
+  EXPECT_TRUE(says(*gfs, "Optical depth of a column: up to "));
+  EXPECT_NEAR(double(*std::ranges::max_element(extinction)) * 3600, 3.17 * 157, 0.03 * 3.17 * 157);
+}
+
 TEST(RealFiles, EdgesAreRefusedInWords) {
   struct Case {
     const char *name, *says;
@@ -345,8 +370,8 @@ TEST(RealFiles, EdgesAreRefusedInWords) {
                         {"edge/gdal_rotated_pole.nc", "no cloud water"},
                         {"edge/gdal_scale_offset.nc", "no cloud water"},
                         {"edge/psyplot_icon_test.nc", "no cloud water"},
-                        {"raster/goes16_abi_l2_acha_conus_20171025_2056.nc", "no cloud water"},
-                        {"raster/gfs_1deg_cloudwater_20120515.nc", "no cloud water"}}) {
+                        {"raster/goes16_abi_l2_acha_conus_20171025_2056.nc", "--optical-depth"},
+                        {"raster/gfs_1deg_cloudwater_20120515.nc", "--cloud-top"}}) {
     std::string text;
     try {
       open(c.name);

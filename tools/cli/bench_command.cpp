@@ -75,6 +75,7 @@ Scene scene_of(const std::string& input, const BenchOptions& options,
   RenderOptions render;
   render.inputs = {input};
   render.size = options.size.value_or("96x54");
+  render.terrain = options.terrain;
   Scene scene = scene_from(render, pictures);
   scene.render.engine = Engine::kMarch;
   if (options.exact_orders)
@@ -141,7 +142,8 @@ std::string command_line(const BenchOptions& options) {
        {std::pair{"--size", &options.size}, std::pair{"--repeat", &options.repeats},
         std::pair{"--spp", &options.spp}, std::pair{"--exact-orders", &options.exact_orders},
         std::pair{"--host-mib", &options.host_mib},
-        std::pair{"--finest-step", &options.finest_step}})
+        std::pair{"--finest-step", &options.finest_step},
+        std::pair{"--terrain", &options.terrain}})
     if (*value) text += std::string(" ") + name + " " + **value;
   return text;
 }

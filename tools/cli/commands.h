@@ -7,6 +7,12 @@
 namespace nepho {
 
 // What the command line says, still as the user wrote it: the commands check and convert.
+
+// Of rasters of clouds.
+struct RasterWords {
+  std::optional<std::string> bands, cloud_base, cloud_top, cloud_thickness, optical_depth;
+};
+
 struct RenderOptions {
   std::vector<std::string> inputs;  // a scene, a picture with a scene in it, or data files
   std::string output;  // "": the input's name in this folder, .png (or .ppm); NAME-again for NAME
@@ -19,12 +25,15 @@ struct RenderOptions {
   std::optional<std::string> engine, spp, noise, levels, host_mib, exact_orders;
   std::optional<std::string> at, heading_deg, pitch_deg, view, time, region;
   bool explain = false, explain_all = false, dither = false, no_planet = false, force = false;
+  RasterWords raster;
+  std::optional<std::string> terrain;
   bool explain_macros = false;  // hidden: what the tests of the shaders' text compile them with
 };
 
 struct InfoOptions {
   std::string input;
   std::optional<std::string> grid, names, up, metres_per_unit, density_scale, frame, time, region;
+  RasterWords raster;
   bool json = false, check = false, force = false;
 };
 
@@ -38,7 +47,7 @@ struct BenchOptions {
   std::vector<std::string> scenes;  // each a section of the report
   std::vector<std::string> sweeps;  // NAME=VALUE,VALUE,...
   std::string output;               // a folder
-  std::optional<std::string> size, repeats, spp, exact_orders, host_mib, finest_step;
+  std::optional<std::string> size, repeats, spp, exact_orders, host_mib, finest_step, terrain;
 };
 
 // Each throws Error for what a user can cause, and prints its result on standard output.

@@ -36,6 +36,7 @@ Scene scene_of(const InfoOptions& options, const PictureFiles& pictures) {
   set_parameter(scene, "metres_per_unit", "--metres-per-unit", options.metres_per_unit);
   set_parameter(scene, "density_scale", "--density-scale", options.density_scale);
   set_parameter(scene, "frame", "--frame", options.frame);
+  set_raster(scene, options.raster);
   set_force(scene, options.force);
   set_region(scene, options.region);
   return scene;

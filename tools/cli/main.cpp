@@ -26,6 +26,8 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope render wrfout_d01.nc --time 2005-08-28T15:00Z --view globe -o globe.png
   nephoscope render wrfout_d01.nc --at 29.9,-90.1 --heading 180 --pitch 12 -o street.png
   nephoscope render gfs.grib2 --region 30,160,60,-150 -o pacific.png
+  nephoscope render wrfout_d01.nc --terrain dem.tif -o alps.png  a finer ground
+  nephoscope render cot.tif cth.tif -o satellite.png     rasters of optical depth and height
   nephoscope render wrfout_d01.nc --sun 2005-08-28T23:00Z --no-planet -o evening.png
   nephoscope render scene.json --target-error 1% -o fine.exr   the settings are chosen, and said
   nephoscope render smoke.png --engine reference --noise 1% -o true.exr   the same, path traced
@@ -39,7 +41,7 @@ constexpr const char* kExamples = R"(Examples:
 constexpr const char* kTime =
     "of the data: 2005-08-28T15:00Z, an index from 0, first, last, cloudiest, or seconds: 3600s";
 constexpr const char* kRegion =
-    "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF, GRIB)";
+    "SOUTH,WEST,NORTH,EAST in degrees: read only this part (NetCDF, GRIB, rasters)";
 
 void start_logging() {
   auto logger = spdlog::stderr_logger_mt("nephoscope");
@@ -73,6 +75,24 @@ void add_data_options(CLI::App& command, Text& grid, Text& names, Text& up, Text
       ->group("Data");
   command.add_option("--frame", frame, "frame of a sequence name.####.vdb")->group("Data");
 }
+
+void add_raster_options(CLI::App& command, RasterWords& o) {
+  const char* group = "Rasters of clouds";
+  command
+      .add_option("--bands", o.bands,
+                  "what each band is: optical_depth,\"top_height km\",-; otherwise as it says")
+      ->group(group);
+  command.add_option("--cloud-base", o.cloud_base, "height in m of all bases")->group(group);
+  command.add_option("--cloud-top", o.cloud_top, "height in m of all tops")->group(group);
+  command
+      .add_option("--cloud-thickness", o.cloud_thickness,
+                  "in m, of all clouds; otherwise water path over water content")
+      ->group(group);
+  command.add_option("--optical-depth", o.optical_depth, "of all clouds, where no band holds it")
+      ->group(group);
+}
+
+constexpr const char* kTerrain = "heights of ground, such as dem.tif: the planet's surface";
 
 void add_camera_options(CLI::App& command, RenderOptions& o) {
   const char* group = "Camera and light";
@@ -220,6 +240,8 @@ int run(int argc, char** argv) {
   draw->add_flag("--force", render.force, "draw values that no cloud has (NetCDF, GRIB)")
       ->group("Data");
   draw->add_option("--region", render.region, kRegion)->group("Data");
+  draw->add_option("--terrain", render.terrain, kTerrain)->group("Data");
+  add_raster_options(*draw, render.raster);
   draw->add_flag("--explain-macros", render.explain_macros, "")->group("");
   draw->footer(kExamples);
   draw->callback([&] { render_command(render); });
@@ -235,6 +257,7 @@ int run(int argc, char** argv) {
   tell->add_option("--region", info.region, kRegion)->group("Data");
   add_data_options(*tell, info.grid, info.names, info.up, info.metres_per_unit, info.density_scale,
                    info.frame);
+  add_raster_options(*tell, info.raster);
   tell->callback([&] { info_command(info); });
 
   CompareOptions compare;
@@ -250,6 +273,7 @@ int run(int argc, char** argv) {
       app.add_subcommand("bench", "error against run time: settings of scenes, as a report");
   measure->add_option("SCENE", bench.scenes, "SCENE.json, PICTURE or data FILE, one section each")
       ->required();
+  measure->add_option("--terrain", bench.terrain, kTerrain);
   measure->add_option("-o,--output", bench.output, "folder of the report")->required();
   add_bench_options(*measure, bench);
   measure->callback([&] { bench_command(bench); });

@@ -1,6 +1,7 @@
 #include "cli/scene_input.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <fstream>
@@ -292,6 +293,23 @@ void apply_paths(Scene& scene, const RenderOptions& o) {
   if (o.host_mib) paths.host_mib = number_value("--host-mib", *o.host_mib, "paths", "host_mib");
 }
 
+// Rasters given together hold one field each of the same clouds.
+void join_rasters(std::vector<VolumeSpec>& data) {
+  VolumeSpec* first = nullptr;
+  constexpr std::array kEndings = {"gdal", "tif", "tiff", "gtiff", "vrt",
+                                   "img",  "jp2", "asc",  "hgt",   "bil"};
+  for (VolumeSpec& volume : data) {
+    if (std::ranges::find(kEndings, volume.source) == kEndings.end()) continue;
+    if (!first) {
+      first = &volume;
+      continue;
+    }
+    first->files.push_back(volume.files.front());
+    volume.files.clear();
+  }
+  std::erase_if(data, [](const VolumeSpec& volume) { return volume.files.empty(); });
+}
+
 }  // namespace
 
 InputKind input_kind(const std::string& input) {
@@ -331,12 +349,13 @@ VolumeSpec data_volume(const std::string& file) {
     volume.source = "grib";
     return volume;
   }
-  if (bytes.starts_with(std::string("II*\0", 4)) || bytes.starts_with(std::string("MM\0*", 4)))
-    throw Error({"a raster is no cloud field", file, "NetCDF, GRIB or VDB", "TIFF", ""});
+  for (const char* tiff : {"II*\0", "MM\0*", "II+\0", "MM\0+"})
+    if (bytes.starts_with(std::string(tiff, 4))) volume.source = "gdal";
+  if (!volume.source.empty()) return volume;
   const std::string ending = ending_of(file);
   if (ending.empty())
     throw Error({"unknown kind of file", file,
-                 "NetCDF or GRIB, or a name with an ending, such as .vdb", "none", ""});
+                 "NetCDF, GRIB or TIFF, or a name with an ending, such as .vdb", "none", ""});
   volume.source = ending.substr(1);
   return volume;
 }
@@ -370,6 +389,14 @@ void set_region(Scene& scene, const std::optional<std::string>& value) {
   lay_over(scene, {"region", "", 0, *value, true, "--region"});
 }
 
+void set_raster(Scene& scene, const RasterWords& words) {
+  set_parameter(scene, "bands", "--bands", words.bands);
+  set_parameter(scene, "cloud_base_m", "--cloud-base", words.cloud_base);
+  set_parameter(scene, "cloud_top_m", "--cloud-top", words.cloud_top);
+  set_parameter(scene, "cloud_thickness_m", "--cloud-thickness", words.cloud_thickness);
+  set_parameter(scene, "cloud_optical_depth", "--optical-depth", words.optical_depth);
+}
+
 void set_parameter(Scene& scene, const char* parameter, const std::string& option,
                    const std::optional<std::string>& value) {
   if (value) lay_over(scene, make_parameter(parameter, *value, option));
@@ -391,6 +418,7 @@ Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
     scene = kind == InputKind::kScene ? read_scene_file(input) : scene_in_picture(input, pictures);
   }
   data = one_forecast(std::move(data));
+  join_rasters(data);
   scene.volumes.insert(scene.volumes.end(), data.begin(), data.end());
   set_parameter(scene, "grid", "--grid", o.grid);
   set_parameter(scene, "names", "--names", o.names);
@@ -402,6 +430,11 @@ Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
   set_time(scene, o.time);
   set_force(scene, o.force);
   set_region(scene, o.region);
+  set_raster(scene, o.raster);
+  if (o.terrain) {
+    input_kind(*o.terrain);  // says so where there is no such file
+    scene.terrain = {fs::absolute(*o.terrain).lexically_normal().string(), "--terrain"};
+  }
   apply_quality(scene, o);
   apply_paths(scene, o);
   apply_planet(scene, o);

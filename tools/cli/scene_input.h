@@ -29,6 +29,7 @@ void set_time(Scene& scene, const std::optional<std::string>& value);
 // --force, for every volume with files.
 void set_force(Scene& scene, bool force);
 // --region SOUTH,WEST,NORTH,EAST, for every volume with files.
+void set_raster(Scene& scene, const RasterWords& words);
 void set_region(Scene& scene, const std::optional<std::string>& value);
 
 }  // namespace nepho

@@ -6,6 +6,7 @@
 #include "bricks/box_chart.h"
 #include "common/framing.h"
 #include "common/planet_scene.h"
+#include "common/terrain.h"
 #include "core/error.h"
 #include "optics/phase_table.h"
 #include "scene/scene_file.h"
@@ -240,6 +241,7 @@ OpenedScene open_scene(const SourceHost& host, Scene scene) {
   }
   const Placement frame = scene_frame(opened.scene);
   resolve_planet(opened);
+  open_terrain(host, opened);
   Camera camera;
   glm::dvec3 irradiance = kSunIrradiance_W_per_m2_nm;
   if (const auto body = body_of(opened)) {

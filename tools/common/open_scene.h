@@ -15,7 +15,8 @@ namespace nepho {
 struct OpenedScene {
   Scene scene;  // camera, sun and sky are filled in: what a picture's metadata stores
   std::vector<std::unique_ptr<BrickSource>> sources;
-  RenderRequest request;                 // points into `sources`
+  std::shared_ptr<const SurfaceMap> terrain;  // the request's; null without one
+  RenderRequest request;                 // points into `sources` and `terrain`
   std::vector<std::string> assumptions;  // what was not in the data, one sentence each
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bricks/shell_chart.h"
@@ -25,6 +27,21 @@ struct PlanetGround {
   // East, north and the ellipsoid's normal; at a pole, east is +y.
   LocalAxes axes(const glm::dvec3& ecef_m) const;
 };
+
+// The four nodes around a direction of scaled space (SurfaceMap), and its place between them.
+struct MapPlace {
+  std::array<std::size_t, 4> node;
+  std::array<double, 4> weight;
+  // Bilinear; NaN where a node with weight has none.
+  double value(const std::vector<float>& of) const {
+    double sum = 0;
+    for (std::size_t n = 0; n < 4; ++n)
+      if (weight[n] > 0) sum += weight[n] * double(of[node[n]]);
+    return sum;
+  }
+};
+// Empty outside the grid.
+std::optional<MapPlace> place_on(const SurfaceMap& map, const glm::dvec3& scaled);
 
 // Height of the ground in a map's grid, by its bilinear rule; false outside the grid.
 bool map_height_m(const SurfaceMap& map, const Ellipsoid& body, const glm::dvec3& ecef_m,

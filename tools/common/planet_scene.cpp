@@ -51,9 +51,10 @@ class Framing {
  public:
   Framing(OpenedScene& opened, const Ellipsoid& body) : opened_(opened), scene_(opened.scene) {
     ground_.body = body;
+    if (opened.terrain) ground_.maps.push_back(opened.terrain);
     for (std::size_t v = 0; v < opened.sources.size(); ++v) {
       if (info(v).on_planet) weather_.push_back(v);
-      if (info(v).surface) ground_.maps.push_back(info(v).surface);
+      if (info(v).surface && !opened.terrain) ground_.maps.push_back(info(v).surface);
     }
     if (weather_.empty())
       for (std::size_t v = 0; v < opened.sources.size(); ++v) weather_.push_back(v);
@@ -343,7 +344,7 @@ class Framing {
 void resolve_planet(OpenedScene& opened) {
   Scene& scene = opened.scene;
   const ShellChart* weather = nullptr;
-  bool any = false;
+  bool any = scene.terrain.has_value();
   for (const auto& source : opened.sources) {
     if (!source->info().on_planet) continue;
     any = true;

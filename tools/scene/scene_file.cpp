@@ -286,6 +286,8 @@ Scene parse_scene(std::string_view text, const std::string& source_name,
   const Placement frame = scene_frame(scene);
   scene.no_planet = in.is_none("planet");
   if (!scene.no_planet) in.at_most_one({"sky", "planet"});
+  if (const auto file = in.text("terrain"))
+    scene.terrain = {(folder / *file).lexically_normal().string(), in.where("terrain")};
   if (const auto planet = in.object("planet")) scene.planet = read_planet(*planet);
   const Ellipsoid body = scene.planet ? scene.planet->body : Ellipsoid::wgs84();
   if (const auto camera = in.object("camera")) scene.camera = read_camera(*camera, frame, body);

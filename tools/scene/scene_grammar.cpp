@@ -153,6 +153,7 @@ constexpr FieldGrammar kSceneFields[] = {
     {"sun", kObject, 0, 0, {}, &kSun},
     {"sky", kObject, 0, 0, {}, &kSky},
     {"planet", kObjectOrNone, 0, 0, {}, &kPlanet},
+    {"terrain", kText},
     {"image", kObject, 0, 0, {}, &kImage},
     {"render", kObject, 0, 0, {}, &kRender},
     {"exposure_ev", kNumber, -60, 60},

@@ -158,6 +158,7 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
     out["planet"] = "none";
   else if (scene.planet)
     out["planet"] = write_planet(*scene.planet);
+  if (scene.terrain) out["terrain"] = write_file_name(scene.terrain->file, folder);
   out["image"] = {{"width", scene.render.width}, {"height", scene.render.height}};
   out["render"] = write_render(scene.render);
   if (scene.target)

@@ -38,6 +38,15 @@ glm::dvec2 place_deg(const Ellipsoid& body, const glm::dvec3& scaled) {
 struct Piece {
   GridSearch search;
   ForecastGround ground;
+  std::function<glm::dvec2(glm::dvec2)> cell_of = {};  // instead of the search, where it is known
+
+  GridSearch::Found find(glm::dvec2 place, const GridSearch::Found& near) const {
+    if (!cell_of) return near.off_cells > 0 ? search.find(place) : search.find(place, near.at);
+    const glm::dvec2 at = cell_of(place), size(search.grid().nx(), search.grid().ny());
+    if (!std::isfinite(at.x) || !std::isfinite(at.y)) return {{}, 1e9};
+    const glm::dvec2 inside = glm::clamp(at, glm::dvec2(0.0), size);
+    return {inside, glm::length(at - inside)};
+  }
 
   std::size_t cells() const {
     return std::size_t(search.grid().nx()) * std::size_t(search.grid().ny());
@@ -140,7 +149,7 @@ void fill_row(SurfaceMap& map, int j, const Piece& piece, const Ellipsoid& body,
     if (set[node]) continue;
     const glm::dvec2 at = map.low_rad + glm::dvec2(i, j) * map.step_rad;
     const glm::dvec2 place = place_deg(body, direction(map.axes, at));
-    found = found.off_cells > 0 ? piece.search.find(place) : piece.search.find(place, found.at);
+    found = piece.find(place, found);
     if (found.off_cells > kOutside_cells) continue;
     set[node] = 1;
     if (piece.has(piece.ground.height_m))
@@ -151,11 +160,7 @@ void fill_row(SurfaceMap& map, int j, const Piece& piece, const Ellipsoid& body,
   }
 }
 
-}  // namespace
-
-GroundMap ground_map(const Forecast& forecast) {
-  const std::vector<Piece> pieces = pieces_of(forecast);
-  if (pieces.empty()) return {};
+std::shared_ptr<const SurfaceMap> map_of(const std::vector<Piece>& pieces, float outside_m = 0) {
   const Ellipsoid body = Ellipsoid::wgs84();
   const GridSearch& search = pieces.front().search;
   auto map = std::make_shared<SurfaceMap>();
@@ -173,14 +178,31 @@ GroundMap ground_map(const Forecast& forecast) {
   map->ny = count(map->step_rad.y) + 1;
   map->step_rad /= glm::dvec2(map->around ? map->nx : map->nx - 1, map->ny - 1);
   const auto nodes = std::size_t(map->nx) * std::size_t(map->ny);
-  map->height_m.assign(nodes, 0.0f);
+  map->height_m.assign(nodes, outside_m);
   map->water.assign(nodes, 1.0f);
   std::vector<char> set(nodes, 0);
   tbb::parallel_for(0, map->ny, [&](int j) {
     for (const Piece& piece : pieces) fill_row(*map, j, piece, body, set);
   });
+  return map;
+}
+
+}  // namespace
+
+GroundMap ground_map(const Forecast& forecast) {
+  const std::vector<Piece> pieces = pieces_of(forecast);
+  if (pieces.empty()) return {};
   const Piece& first = pieces.front();
-  return {std::move(map), first.has(first.ground.water)};
+  return {map_of(pieces), first.has(first.ground.water)};
+}
+
+std::shared_ptr<const SurfaceMap> ground_map(std::shared_ptr<const HorizontalGrid> grid,
+                                             ForecastGround ground,
+                                             std::function<glm::dvec2(glm::dvec2)> cell_of,
+                                             float outside_m) {
+  std::vector<Piece> pieces;
+  pieces.push_back({GridSearch(std::move(grid)), std::move(ground), std::move(cell_of)});
+  return map_of(pieces, outside_m);
 }
 
 }  // namespace nepho::forecast

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "bricks/surface_map.h"
@@ -16,5 +17,11 @@ struct GroundMap {
   bool has_water = true;  // false: no mask, so that sea is where the ground is at or below 0.5 m
 };
 GroundMap ground_map(const Forecast& forecast);
+// The same of one grid whose inverse is known: `cell_of` takes latitude and longitude (deg) to x in
+// [0, nx], y in [0, ny], or to what is not in there. Thread-safe. NaN heights stay, and nodes
+// outside the grid have `outside_m`.
+std::shared_ptr<const SurfaceMap> ground_map(
+    std::shared_ptr<const HorizontalGrid> grid, ForecastGround ground,
+    std::function<glm::dvec2(glm::dvec2 lat_lon_deg)> cell_of, float outside_m = 0);
 
 }  // namespace nepho::forecast

@@ -8,7 +8,7 @@
 namespace nepho::forecast {
 namespace {
 
-const std::array<const Convention*, 2> kConventions = {&kWrf, &kCf};
+const std::array<const Convention*, 3> kConventions = {&kWrf, &kCf, &kRaster};
 
 std::unique_ptr<Forecast> open_file(const std::string& path, const OpenRequest& request) {
   const std::shared_ptr<const DataFile> file = request.open_file(path);
@@ -22,6 +22,10 @@ std::unique_ptr<Forecast> open_file(const std::string& path, const OpenRequest& 
   if (!best)
     throw Error({"the file follows no convention that is known", path, "WRF or CF",
                  std::to_string(file->variables().size()) + " variables", ""});
+  if (request.raster.stated && best != &kRaster)
+    throw Error({"the file's clouds are on levels, or are none", path,
+                 "columns of clouds, for what is stated of cloud_base_m and the like",
+                 std::string("the convention ") + best->name, "leave those options out"});
   return best->open(file, request);
 }
 

@@ -9,6 +9,7 @@
 #include "forecast/conventions/cell_window.h"
 #include "forecast/files/data_file.h"
 #include "forecast/forecast.h"
+#include "forecast/rasters/raster_options.h"
 
 namespace nepho::forecast {
 
@@ -24,6 +25,7 @@ struct OpenRequest {
   bool is_part = false;
   std::string grid_file;         // of cells that are no rows and columns; "": the data's own
   std::optional<Region> region;  // all that is read; the whole file without one
+  RasterOptions raster;          // of columns of clouds without levels
 };
 
 // Recognises the files' convention and opens them. Reads the first time that holds data, so that
@@ -56,7 +58,8 @@ struct NamedForecast {
 // least one part.
 std::unique_ptr<Forecast> nest_forecasts(std::vector<NamedForecast> parts);
 
-extern const Convention kWrf;  // WRF-ARW: wrf.cpp
-extern const Convention kCf;   // CF and what is near to it: cf.cpp
+extern const Convention kWrf;     // WRF-ARW: wrf.cpp
+extern const Convention kCf;      // CF and what is near to it: cf.cpp
+extern const Convention kRaster;  // columns of clouds, without levels: rasters/cf_raster.cpp
 
 }  // namespace nepho::forecast

@@ -114,7 +114,7 @@ bool unstructured(const DataFile& file, const FileVariable& variable, int dimens
 
 }  // namespace
 
-DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variable) {
+DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variable, Levels levels) {
   DimensionRoles roles;
   const auto give = [&](Role role, int dimension) {
     int* place = role == Role::kTime    ? &roles.time
@@ -163,7 +163,7 @@ DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variabl
          "dimensions of latitude and longitude, or y and x", file.shape_text(variable),
          "profiles over time are no volume; other names of dimensions can be told in a file for "
          "--names: x_axis, y_axis, level_axis"});
-  if (roles.z < 0 || (roles.y < 0 && roles.cells < 0) || roles.x < 0)
+  if ((roles.z < 0 && levels == Levels::kNeeded) || (roles.y < 0 && roles.cells < 0) || roles.x < 0)
     throw Error({"the cloud water's dimensions are not understood", file.where(variable),
                  "level, y and x, by units, axis, standard_name or usual names",
                  file.shape_text(variable),

@@ -14,8 +14,10 @@ struct DimensionRoles {
   const FileVariable *latitude = nullptr, *longitude = nullptr;
 };
 
-// Cells in a row (triangles) have x only. Throws Error where the variable has no level, or no
-// horizontal grid.
-DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variable);
+// Cells in a row (triangles) have x only. Throws Error where the variable has no level but needs
+// one, or no horizontal grid.
+enum class Levels { kNeeded, kNone };
+DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variable,
+                               Levels levels = Levels::kNeeded);
 
 }  // namespace nepho::forecast

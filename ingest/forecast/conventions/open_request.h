@@ -11,7 +11,7 @@ namespace nepho::forecast {
 //   grid    a file with the places of the cells (triangles, Voronoi's cells); the data's own
 //   names   a file of names of a model that the table does not know (docs/names.md); none
 //   region  "SOUTH,WEST,NORTH,EAST" in degrees: only cells there are read (the whole file)
-// `format` names the module in errors. Throws Error.
+// and those of raster_options(). `format` names the module in errors. Throws Error.
 OpenRequest open_request(const SourceRequest& request, Parameters& parameters, const char* format);
 
 }  // namespace nepho::forecast
