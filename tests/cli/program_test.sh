@@ -130,10 +130,10 @@ explain_lists_what_was_used() {
   has a.txt '^left out:'
   if grep -qi 'openvdb\|nepho_image_oiio' a.txt; then fail "loaded what the scene does not need"; fi
   # A picture module brings hundreds of libraries: by name those that it asks for itself.
-  nephoscope render in/s.json --explain -o b.png >b.txt 2>/dev/null || return 0
+  nephoscope render in/s.json --explain -o b.exr >b.txt 2>/dev/null || return 0
   has b.txt '^  nepho_image_oiio.so$' && has b.txt '^  libOpenImageIO\.so' &&
     has b.txt '^  and [0-9]+ that these need \(--explain-all names them\)$'
-  nephoscope render in/s.json --explain-all -o c.png >c.txt
+  nephoscope render in/s.json --explain-all -o c.exr >c.txt
   [ "$(grep -c '^  lib.*\.so' c.txt)" -gt "$(grep -c '^  lib.*\.so' b.txt)" ] || fail "names no more"
   if grep -q 'that these need' c.txt; then fail "counts what it names"; fi
 }

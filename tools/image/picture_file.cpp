@@ -22,6 +22,7 @@ constexpr std::array kEndings{
     Ending{".hdr", PictureFormat::kHdr}, Ending{".pfm", PictureFormat::kPfm},
     Ending{".ppm", PictureFormat::kPpm}};
 constexpr const char* kModuleFile = "nepho_image_oiio.so";
+constexpr const char* kPngWriterFile = "nepho_image_png.so";   // writes only, without OpenImageIO
 constexpr std::size_t kLargestPicture = std::size_t{1} << 30;  // values of a picture that is read
 
 std::atomic<bool> the_module_loaded = false;
@@ -39,26 +40,32 @@ bool needs_module(PictureFormat format) {
 }
 
 // Never closed: OpenImageIO keeps threads and global state.
+const PictureModule& load_module(const std::filesystem::path& file) {
+  void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library) throw Error({"the picture module does not load", file.string(), "", dlerror(), ""});
+  const auto entry =
+      reinterpret_cast<nepho_picture_module_fn*>(dlsym(library, "nepho_picture_module"));
+  const PictureModule* module = entry ? entry() : nullptr;
+  if (!module || module->version != kPictureModuleVersion)
+    throw Error({"the picture module is of another version", file.string(),
+                 std::to_string(kPictureModuleVersion),
+                 module ? std::to_string(module->version) : "none", ""});
+  the_module_loaded = true;
+  return *module;
+}
+
+enum class Use { kRead, kWrite };
+
 const PictureModule& open_module(const std::vector<std::filesystem::path>& folders,
-                                 const std::filesystem::path& picture) {
-  const std::string ending = find_ending(picture)->text;
-  for (const std::filesystem::path& folder : folders) {
-    const std::filesystem::path file = folder / kModuleFile;
-    if (!std::filesystem::exists(file)) continue;
-    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!library)
-      throw Error({"the picture module does not load", file.string(), "", dlerror(), ""});
-    const auto entry =
-        reinterpret_cast<nepho_picture_module_fn*>(dlsym(library, "nepho_picture_module"));
-    const PictureModule* module = entry ? entry() : nullptr;
-    if (!module || module->version != kPictureModuleVersion)
-      throw Error({"the picture module is of another version", file.string(),
-                   std::to_string(kPictureModuleVersion),
-                   module ? std::to_string(module->version) : "none", ""});
-    the_module_loaded = true;
-    return *module;
-  }
-  throw Error({"no " + ending + " pictures in this build", picture.string(), "",
+                                 const std::filesystem::path& picture, Use use) {
+  const Ending* ending = find_ending(picture);
+  std::vector<const char*> names{kModuleFile};
+  if (use == Use::kWrite && ending->format == PictureFormat::kPng)
+    names.insert(names.begin(), kPngWriterFile);
+  for (const char* name : names)
+    for (const std::filesystem::path& folder : folders)
+      if (std::filesystem::exists(folder / name)) return load_module(folder / name);
+  throw Error({"no " + std::string(ending->text) + " pictures in this build", picture.string(), "",
                std::string("no module ") + kModuleFile,
                "install OpenImageIO (Debian: libopenimageio-dev) and build again, or write .pfm "
                "or .ppm"});
@@ -127,7 +134,7 @@ PictureFormat picture_format(const std::filesystem::path& path) {
 }
 
 void PictureFiles::check_format(const std::filesystem::path& path) const {
-  if (needs_module(picture_format(path))) open_module(folders_, path);
+  if (needs_module(picture_format(path))) open_module(folders_, path, Use::kWrite);
 }
 
 void PictureFiles::write(const std::filesystem::path& path, PictureFormat format,
@@ -145,15 +152,17 @@ void PictureFiles::write(const std::filesystem::path& path, PictureFormat format
       view.height = shown.height;
       view.type = PixelType::kByte;
       view.pixels = shown.values.data();
-      return write_through_module(open_module(folders_, "x.png"), path, "png", view, metadata);
+      return write_through_module(open_module(folders_, "x.png", Use::kWrite), path, "png", view,
+                                  metadata);
     case PictureFormat::kExr:
       view.channels = linear.channels;
       view.pixels = linear.values.data();
-      return write_through_module(open_module(folders_, "x.exr"), path, "openexr", view, metadata);
+      return write_through_module(open_module(folders_, "x.exr", Use::kWrite), path, "openexr",
+                                  view, metadata);
     case PictureFormat::kHdr: {
       const FloatImage rgb = first_three(linear);
       view.pixels = rgb.values.data();
-      write_through_module(open_module(folders_, "x.hdr"), path, "hdr", view, {});
+      write_through_module(open_module(folders_, "x.hdr", Use::kWrite), path, "hdr", view, {});
       return append_trailer(path, metadata);
     }
   }
@@ -167,7 +176,7 @@ Metadata PictureFiles::read_metadata(const std::filesystem::path& path) const {
   } else if (!needs_module(format) || format == PictureFormat::kHdr) {
     metadata = read_trailer(path);
   } else {
-    read_through_module(open_module(folders_, path), path, false, metadata);
+    read_through_module(open_module(folders_, path, Use::kRead), path, false, metadata);
   }
   return metadata;
 }
@@ -182,7 +191,8 @@ FloatImage PictureFiles::read(const std::filesystem::path& path, Metadata& metad
                    [](std::uint8_t v) { return float(v) / 255.0f; });
     return image;
   }
-  FloatImage image = read_through_module(open_module(folders_, path), path, true, metadata);
+  FloatImage image =
+      read_through_module(open_module(folders_, path, Use::kRead), path, true, metadata);
   if (format == PictureFormat::kHdr) metadata = read_trailer(path);
   return image;
 }
