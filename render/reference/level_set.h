@@ -33,6 +33,13 @@ class LevelSet {
     (void)volume, (void)leaf, (void)global;
     return 0;
   }
+  // Above 0: extinction is own_extinction_per_m() rather than the bricks', and each cell of each
+  // leaf that is not empty is taken in so many steps (own_field.h).
+  virtual int own_field_steps() const { return 0; }
+  virtual double own_extinction_per_m(std::size_t volume, const RootPosition& at) const {
+    (void)volume, (void)at;
+    return 0;
+  }
 };
 
 // The cut of a forest, which outlives this.
