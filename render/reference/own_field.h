@@ -6,6 +6,16 @@
 
 namespace nepho {
 
+// Bricks, whose cells are taken in steps as those of an OwnField are.
+class BricksInSteps final : public CutLevels {
+ public:
+  BricksInSteps(const Forest& forest, int steps) : CutLevels(forest), steps_(steps) {}
+  int steps_in_cell() const override { return steps_; }
+
+ private:
+  int steps_;
+};
+
 // The sources' own fields rather than what their bricks interpolate: the truth that the data term
 // of an error goes by. `bricks` holds the same volumes and outlives this; rays go through the cells
 // of its nodes that are not empty, and look at the field at the ends and in the middle of `steps`
@@ -20,7 +30,8 @@ class OwnField final : public LevelSet {
   LevelLeaf leaf(std::size_t volume, int root, const Index3& finest_cell) const override {
     return bricks_.leaf(volume, root, finest_cell);
   }
-  int own_field_steps() const override { return steps_; }
+  int steps_in_cell() const override { return steps_; }
+  bool is_own_field() const override { return true; }
   // Throws Error with the source's own text where it fails.
   double own_extinction_per_m(std::size_t volume, const RootPosition& at) const override;
 

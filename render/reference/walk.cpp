@@ -24,7 +24,8 @@ VolumeWalk::VolumeWalk(const LevelSet& levels, std::size_t volume, const Ray& ra
       volume_(volume),
       ray_(chart_ray(levels.info(volume), ray)),
       whole_constants_(whole_constants),
-      own_steps_(levels.own_field_steps()),
+      steps_(levels.steps_in_cell()),
+      own_field_(levels.is_own_field()),
       start_(ray_->start(t_max_m)),
       root_(start_.root),
       cell_(start_.cell),
@@ -117,7 +118,10 @@ bool VolumeWalk::next() {
 
 double VolumeWalk::extinction_per_m(double t_m) const {
   if (leaf_.kind == NodeKind::kEmpty) return 0;
-  return own_steps_ > 0 ? own_extinction_per_m(t_m) : brick_extinction_per_m(t_m);
+#if defined(NEPHO_MUTANT_OWN_IS_BRICKS)
+  return brick_extinction_per_m(t_m);
+#endif
+  return own_field_ ? own_extinction_per_m(t_m) : brick_extinction_per_m(t_m);
 }
 
 double VolumeWalk::own_extinction_per_m(double t_m) const {
@@ -134,6 +138,9 @@ double VolumeWalk::own_extinction_per_m(double t_m) const {
 
 double VolumeWalk::brick_extinction_per_m(double t_m) const {
   if (leaf_.kind == NodeKind::kConstant) return leaf_.constant_per_m;
+#if defined(NEPHO_MUTANT_MARCH_HALF_BRICKS)
+  return 0.5 * interpolated(corners_, t_m);
+#endif
   return interpolated(corners_, t_m);
 }
 
@@ -195,7 +202,7 @@ double VolumeWalk::ice_part(double t_m) const {
 
 int VolumeWalk::sub_steps(double length_m) const {
   if (kind() != NodeKind::kBrick) return 1;
-  return std::max(own_steps_, ray_->sub_steps(length_m, double(size_[2])));
+  return std::max(steps_, ray_->sub_steps(length_m, double(size_[2])));
 }
 
 }  // namespace nepho

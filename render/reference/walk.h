@@ -28,7 +28,7 @@ class VolumeWalk {
   double t1_m() const { return t1_m_; }
   // kBrick where the field is the source's own, but for empty nodes.
   NodeKind kind() const {
-    return own_steps_ > 0 && leaf_.kind != NodeKind::kEmpty ? NodeKind::kBrick : leaf_.kind;
+    return own_field_ && leaf_.kind != NodeKind::kEmpty ? NodeKind::kBrick : leaf_.kind;
   }
   double extinction_per_m(double t_m) const;  // t inside the piece
   // Part of it that is ice, 0 .. 1: where extinction goes to 0, the whole brick's (as the
@@ -56,7 +56,8 @@ class VolumeWalk {
   std::size_t volume_;
   std::unique_ptr<ChartRay> ray_;
   bool whole_constants_;
-  int own_steps_;  // of the source's own field in a cell; 0: bricks
+  int steps_;  // in a cell, at least
+  bool own_field_;
   ChartRay::Start start_;
   int root_ = 0;
   ChartRay::Cell cell_{};  // finest cell that the next piece begins in

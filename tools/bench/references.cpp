@@ -297,8 +297,15 @@ OwnPicture References::march_own(const RenderRequest& request) {
     const auto stride = std::size_t(std::max(1.0, std::sqrt(double(mask_.size()) / kOwnPixels)));
     progress_.begin(Work::kMarch, "the march on the sources' own fields");
     OwnPicture::Pair seen{{thinned(field, request, stride), 0}, thinned(bricks, request, stride)};
-    seen.own.change =
-        picture_error(thinned(finer, request, 2 * stride), thinned(field, request, 2 * stride));
+    // What finer steps change of the difference: light is looked at from other places too, by both.
+    const HdrImage own_finer = thinned(finer, request, 2 * stride),
+                   bricks_finer =
+                       thinned(BricksInSteps(finest_forest_, kFinerSteps), request, 2 * stride),
+                   bricks_usual = thinned(bricks, request, 2 * stride);
+    HdrImage own_usual = thinned(field, request, 2 * stride);
+    for (std::size_t i = 0; i < own_usual.rgb.size(); ++i)
+      own_usual.rgb[i] += bricks_finer.rgb[i] - bricks_usual.rgb[i];
+    seen.own.change = picture_error(own_usual, own_finer);
     progress_.end();
     return {std::move(seen), ""};
   } catch (const Error& error) {
