@@ -17,7 +17,7 @@ trap 'rm -rf "$report"' EXIT
 for scene in "$@"; do
   size=64x36 budgets=5.12,2.56,1.28 host=256 paths=2048
   case $scene in
-    forecast | globe | planet_*) size=32x18 budgets=1.28,0.64,0.32 paths=4096 ;;
+    forecast | globe | planet_*) size=32x18 budgets=1.28,0.64,0.32 paths=512 ;;
   esac
   case $scene in planet_*) host=32 ;; esac
   build/release/bin/nephoscope bench "data-samples/scenes/$scene.json" --size $size \
