@@ -289,6 +289,8 @@ const OwnPicture& References::own(const RenderSettings& settings) {
 }
 
 OwnPicture References::march_own(const RenderRequest& request) {
+  if (endless_)
+    return {{}, "there are finer bricks than memory holds, and more in the source's own field"};
   if (!holds_everything_)
     return {{}, "the finest bricks are not all levels: more is needed (--host-mib)"};
   try {
