@@ -212,7 +212,8 @@ TEST_F(BenchData, a_planet_without_end_is_held_against_a_stated_depth) {
                                     [](VolumeInfo& info) { info.refine_by_variance = true; });
   const Term data = data_of(endless, 0.5);
   EXPECT_FALSE(data.told());
-  EXPECT_NE(data.withheld.find("finer bricks than memory holds"), std::string::npos) << data.withheld;
+  EXPECT_NE(data.withheld.find("finer bricks than memory holds"), std::string::npos)
+      << data.withheld;
   EXPECT_NE(description_.find("what is finer still is in no number"), std::string::npos)
       << description_;
   EXPECT_NE(description_.find("bricks half as fine look "), std::string::npos) << description_;

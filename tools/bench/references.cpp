@@ -293,26 +293,28 @@ OwnPicture References::march_own(const RenderRequest& request) {
     return {{}, "there are finer bricks than memory holds, and more in the source's own field"};
   if (!holds_everything_)
     return {{}, "the finest bricks are not all levels: more is needed (--host-mib)"};
+  const CutLevels bricks(finest_forest_);
+  std::optional<OwnField> field;
   try {
-    const CutLevels bricks(finest_forest_);
-    const OwnField field(bricks, request.volumes, 1), finer(bricks, request.volumes, kFinerSteps);
-    const auto stride = std::size_t(std::max(1.0, std::sqrt(double(mask_.size()) / kOwnPixels)));
-    progress_.begin(Work::kMarch, "the march on the sources' own fields");
-    OwnPicture::Pair seen{{thinned(field, request, stride), 0}, thinned(bricks, request, stride)};
-    // What finer steps change of the difference: light is looked at from other places too, by both.
-    const HdrImage own_finer = thinned(finer, request, 2 * stride),
-                   bricks_finer =
-                       thinned(BricksInSteps(finest_forest_, kFinerSteps), request, 2 * stride),
-                   bricks_usual = thinned(bricks, request, 2 * stride);
-    HdrImage own_usual = thinned(field, request, 2 * stride);
-    for (std::size_t i = 0; i < own_usual.rgb.size(); ++i)
-      own_usual.rgb[i] += bricks_finer.rgb[i] - bricks_usual.rgb[i];
-    seen.own.change = picture_error(own_usual, own_finer);
-    progress_.end();
-    return {std::move(seen), ""};
+    field.emplace(bricks, request.volumes, 1);
   } catch (const Error& error) {
     return {{}, error.what()};
   }
+  const OwnField finer(bricks, request.volumes, kFinerSteps);
+  const auto stride = std::size_t(std::max(1.0, std::sqrt(double(mask_.size()) / kOwnPixels)));
+  progress_.begin(Work::kMarch, "the march on the sources' own fields");
+  OwnPicture::Pair seen{{thinned(*field, request, stride), 0}, thinned(bricks, request, stride)};
+  // What finer steps change of the difference: light is looked at from other places too, by both.
+  const HdrImage own_finer = thinned(finer, request, 2 * stride),
+                 bricks_finer =
+                     thinned(BricksInSteps(finest_forest_, kFinerSteps), request, 2 * stride),
+                 bricks_usual = thinned(bricks, request, 2 * stride);
+  HdrImage own_usual = thinned(*field, request, 2 * stride);
+  for (std::size_t i = 0; i < own_usual.rgb.size(); ++i)
+    own_usual.rgb[i] += bricks_finer.rgb[i] - bricks_usual.rgb[i];
+  seen.own.change = picture_error(own_usual, own_finer);
+  progress_.end();
+  return {std::move(seen), ""};
 }
 
 // Every so many pixels of the picture on both axes, from the middle of the first such square.
