@@ -16,10 +16,11 @@ report=$(mktemp -d)
 trap 'rm -rf "$report"' EXIT
 for scene in "$@"; do
   size=64x36 budgets=5.12,2.56,1.28 host=256 paths=2048
-  # Among hills half of the time of a path goes to where it meets the ground: few paths.
   case $scene in
     forecast | globe | planet_*) size=32x18 budgets=1.28,0.64,0.32 paths=64 ;;
   esac
+  # Over its hills a path takes more than 2 ms, half of it to find where it meets the ground: none.
+  [ $scene = forecast ] && paths=0
   case $scene in planet_*) host=32 ;; esac
   [ $scene = planet_space ] && paths=2048
   build/release/bin/nephoscope bench "data-samples/scenes/$scene.json" --size $size \
