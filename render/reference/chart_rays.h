@@ -66,9 +66,7 @@ class BoxRay final : public ChartRay {
     return periodic(exit.axis);
   }
   Index3 wrapped(const Cell& cell) const override;
-  int sub_steps(double, double) const override {
-    return 1;
-  }
+  int sub_steps(double, double) const override { return 1; }
 
  private:
   bool periodic(int axis) const {

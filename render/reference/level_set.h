@@ -33,6 +33,14 @@ class LevelSet {
     (void)volume, (void)leaf, (void)global;
     return 0;
   }
+  // Each cell of a leaf that is neither empty nor constant is taken in so many steps, at least.
+  virtual int steps_in_cell() const { return 1; }
+  // Extinction is own_extinction_per_m() rather than the bricks' (own_field.h).
+  virtual bool is_own_field() const { return false; }
+  virtual double own_extinction_per_m(std::size_t volume, const RootPosition& at) const {
+    (void)volume, (void)at;
+    return 0;
+  }
 };
 
 // The cut of a forest, which outlives this.

@@ -24,6 +24,8 @@ VolumeWalk::VolumeWalk(const LevelSet& levels, std::size_t volume, const Ray& ra
       volume_(volume),
       ray_(chart_ray(levels.info(volume), ray)),
       whole_constants_(whole_constants),
+      steps_(levels.steps_in_cell()),
+      own_field_(levels.is_own_field()),
       start_(ray_->start(t_max_m)),
       root_(start_.root),
       cell_(start_.cell),
@@ -52,7 +54,8 @@ void VolumeWalk::find_leaf() {
   const Index3 at = leaf_.key.ijk();
   for (std::size_t a = 0; a < 3; ++a) {
     size_[a] = finest[a] / own[a];
-    node_.low[a] = cell_[a] - inside[a] + std::int64_t(at[a]) * kBrickCells * size_[a];
+    period_[a] = cell_[a] - std::int64_t(inside[a]);
+    node_.low[a] = period_[a] + std::int64_t(at[a]) * kBrickCells * size_[a];
     node_.high[a] = node_.low[a] + kBrickCells * size_[a];
   }
 }
@@ -84,7 +87,7 @@ bool VolumeWalk::next() {
   if (!in_leaf()) find_leaf();
   block_ = node_;
   const bool cells =
-      leaf_.kind == NodeKind::kBrick || (leaf_.kind == NodeKind::kConstant && !whole_constants_);
+      kind() == NodeKind::kBrick || (leaf_.kind == NodeKind::kConstant && !whole_constants_);
   if (cells)
     for (std::size_t a = 0; a < 3; ++a) {
       block_.low[a] += floor_div(cell_[a] - node_.low[a], size_[a]) * size_[a];
@@ -115,7 +118,29 @@ bool VolumeWalk::next() {
 
 double VolumeWalk::extinction_per_m(double t_m) const {
   if (leaf_.kind == NodeKind::kEmpty) return 0;
+#if defined(NEPHO_MUTANT_OWN_IS_BRICKS)
+  return brick_extinction_per_m(t_m);
+#endif
+  return own_field_ ? own_extinction_per_m(t_m) : brick_extinction_per_m(t_m);
+}
+
+double VolumeWalk::own_extinction_per_m(double t_m) const {
+  const Lattice& lattice = levels_.info(volume_).lattice;
+  const Index3& n = lattice.cells(lattice.max_level());
+  const glm::dvec3 at = ray_->cells_at(leaf_root_, t_m);
+  RootPosition position{leaf_root_, glm::dvec3{0.0}};
+  for (int a = 0; a < 3; ++a) {
+    const auto i = std::size_t(a);
+    position.q[a] = std::clamp((at[a] - double(period_[i])) / double(n[i]), 0.0, 1.0);
+  }
+  return levels_.own_extinction_per_m(volume_, position);
+}
+
+double VolumeWalk::brick_extinction_per_m(double t_m) const {
   if (leaf_.kind == NodeKind::kConstant) return leaf_.constant_per_m;
+#if defined(NEPHO_MUTANT_MARCH_HALF_BRICKS)
+  return 0.5 * interpolated(corners_, t_m);
+#endif
   return interpolated(corners_, t_m);
 }
 
@@ -171,12 +196,13 @@ double VolumeWalk::ice_part(double t_m) const {
   if (!(most > 0)) return 0;
   const double whole = std::clamp(greatest(*leaf_.brick->ice) / most, 0.0, 1.0);
   return std::clamp(
-      (interpolated(ice_corners_, t_m) + least * whole) / (extinction_per_m(t_m) + least), 0.0,
-      1.0);
+      (interpolated(ice_corners_, t_m) + least * whole) / (brick_extinction_per_m(t_m) + least),
+      0.0, 1.0);
 }
 
 int VolumeWalk::sub_steps(double length_m) const {
-  return leaf_.kind == NodeKind::kBrick ? ray_->sub_steps(length_m, double(size_[2])) : 1;
+  if (kind() != NodeKind::kBrick) return 1;
+  return std::max(steps_, ray_->sub_steps(length_m, double(size_[2])));
 }
 
 }  // namespace nepho

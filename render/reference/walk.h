@@ -26,7 +26,10 @@ class VolumeWalk {
 
   double t0_m() const { return t0_m_; }
   double t1_m() const { return t1_m_; }
-  NodeKind kind() const { return leaf_.kind; }
+  // kBrick where the field is the source's own, but for empty nodes.
+  NodeKind kind() const {
+    return own_field_ && leaf_.kind != NodeKind::kEmpty ? NodeKind::kBrick : leaf_.kind;
+  }
   double extinction_per_m(double t_m) const;  // t inside the piece
   // Part of it that is ice, 0 .. 1: where extinction goes to 0, the whole brick's (as the
   // renderer's).
@@ -46,11 +49,15 @@ class VolumeWalk {
   void load_corners();
   glm::dvec3 fraction(double t_m) const;  // of the piece's cell
   double interpolated(const std::array<double, 8>& corners, double t_m) const;
+  double brick_extinction_per_m(double t_m) const;
+  double own_extinction_per_m(double t_m) const;
 
   const LevelSet& levels_;
   std::size_t volume_;
   std::unique_ptr<ChartRay> ray_;
   bool whole_constants_;
+  int steps_;  // in a cell, at least
+  bool own_field_;
   ChartRay::Start start_;
   int root_ = 0;
   ChartRay::Cell cell_{};  // finest cell that the next piece begins in
@@ -59,6 +66,7 @@ class VolumeWalk {
   int leaf_root_ = 0;
   ChartRay::Block node_{}, block_{};
   ChartRay::Cell size_{};                            // finest cells in one of the leaf's
+  ChartRay::Cell period_{};                          // finest cells before the leaf's own period
   std::array<double, 8> corners_{}, ice_corners_{};  // the second where the brick has ice
   double t0_m_ = 0, t1_m_ = 0, resume_m_ = 0;
   std::size_t pieces_ = 0;

@@ -200,7 +200,24 @@ TEST(Report, an_axis_of_one_value_is_no_axis_of_the_chart) {
   const std::string table = markdown_of(scene);
   EXPECT_EQ(table.find("step"), table.find("steps"));  // the term, not the setting
   EXPECT_NE(table.find("| 8 | 8 s |"), std::string::npos) << table;
-  EXPECT_EQ(std::ranges::count(table, '\n'), 5);
+  EXPECT_EQ(std::ranges::count(table, '\n'), 7);
+  EXPECT_NE(table.find("\n8x4 pixels; finest bricks: all levels; 64 paths a pixel, noise 1.0 %.\n"),
+            std::string::npos)
+      << table;
+}
+
+TEST(Report, the_table_says_why_a_number_is_missing) {
+  SceneResult scene = made("one");
+  for (SettingResult& s : scene.settings) {
+    s.terms.push_back({.name = kData, .withheld = "no field"});
+    for (Term& term : s.terms)
+      if (term.name == kLightModel) term.withheld = "no field";
+  }
+  const std::string table = markdown_of(scene);
+  EXPECT_NE(table.find(" Not told, light model, data: no field.\n"), std::string::npos) << table;
+  EXPECT_EQ(table.find("no field"), table.rfind("no field"));
+  // Of a term that no column shows nothing is said.
+  EXPECT_EQ(table.find("a \"reason\""), std::string::npos);
 }
 
 TEST(Report, withheld_points_are_not_drawn) {

@@ -7,9 +7,12 @@
 #include "accuracy_report.h"
 #include "analytic_field.h"
 #include "bench/run.h"
+#include "bench/terms.h"
 #include "core/error.h"
+#include "dressed_source.h"
 #include "gl/frame_data.h"
 #include "gl_fixture.h"
+#include "own_source.h"
 #include "reference/error_metric.h"
 #include "reference/march_picture.h"
 
@@ -144,6 +147,77 @@ TEST_F(BenchScene, steps_are_withheld_where_their_reference_is_as_coarse) {
   EXPECT_FALSE(term(result, 0, kSteps).told());
   EXPECT_NE(term(result, 0, kSteps).withheld.find("--finest-step"), std::string::npos);
   EXPECT_FALSE(result.convergence[0].fit);
+}
+
+// A picture's data error, without a renderer: marches alone.
+class BenchData : public ::testing::Test {
+ protected:
+  Term data_of(const BrickSource& source, double host_mib = 64) {
+    OpenedScene scene = opened();
+    scene.request.volumes[0].source = &source;
+    References references(scene, {.most_paths = 0, .host_mib = host_mib}, progress_,
+                          scene.request.settings);
+    const RenderSettings& settings = scene.request.settings;
+    const Reference& finest = references.finest(settings);
+    const OwnPicture& own = references.own(settings);
+    description_ = references.description();
+    change_ = finest.change;
+    return *find_term(
+        decompose({&finest.picture, &finest, &finest, &finest.picture, &finest, nullptr, &own}, {}),
+        kData);
+  }
+  Progress progress_;
+  std::string description_;
+  double change_ = 0;
+};
+
+TEST_F(BenchData, bricks_that_are_the_field_have_none) {
+  // Linear along each axis: what trilinear cells hold.
+  const auto ramp = [](glm::dvec3 p) { return 2e-3 * (2 + p.x / 500) * (1 + p.z / 1000); };
+  const FieldSource bricks(test::box(1000, 1000), test::isotropic(2), ramp);
+  const test::OwnSource exact(bricks, ramp);
+  const Term data = data_of(exact);
+  ASSERT_TRUE(data.told()) << "data: " << data.withheld;
+  const double error = data.rms;
+  test::report_accuracy("reference march", "bench, data error of a field that bricks hold", error,
+                        1e-4, "relative rms of luminance");
+  EXPECT_LE(error, 1e-4);
+}
+
+TEST_F(BenchData, is_what_bricks_miss) {
+  const test::OwnSource fractal(source(), clump), faint(source(), clump, 0.5f);
+  const Term usual = data_of(fractal), halved = data_of(faint);
+  std::printf("measured: data error %.4f, bias %.4f; with half the extinction %.4f, %.4f\n",
+              usual.rms, usual.bias, halved.rms, halved.bias);
+  ASSERT_TRUE(usual.told()) << "data: " << usual.withheld;
+  ASSERT_TRUE(halved.told()) << "data: " << halved.withheld;
+  EXPECT_GT(usual.rms, 1e-3);
+  EXPECT_LT(usual.rms, 0.1);
+  // Half of the extinction is planted: it shows.
+  const double half_missing = halved.rms;
+  EXPECT_GT(half_missing, 5 * usual.rms);
+  EXPECT_LT(halved.bias, -0.1);
+}
+
+TEST_F(BenchData, is_not_told_without_a_field_or_all_levels) {
+  const Term none = data_of(source());
+  EXPECT_FALSE(none.told());
+  EXPECT_NE(none.withheld.find("no field of its own"), std::string::npos) << none.withheld;
+  EXPECT_EQ(description_, "all levels");
+}
+
+// Without an end of levels a depth is stated: what lies below it is in words, not in the numbers.
+TEST_F(BenchData, a_planet_without_end_is_held_against_a_stated_depth) {
+  const test::DressedSource endless(source(),
+                                    [](VolumeInfo& info) { info.refine_by_variance = true; });
+  const Term data = data_of(endless, 0.5);
+  EXPECT_FALSE(data.told());
+  EXPECT_NE(data.withheld.find("finer bricks than memory holds"), std::string::npos)
+      << data.withheld;
+  EXPECT_NE(description_.find("what is finer still is in no number"), std::string::npos)
+      << description_;
+  EXPECT_NE(description_.find("bricks half as fine look "), std::string::npos) << description_;
+  EXPECT_LT(change_, 0.01);  // the march's own
 }
 
 TEST_F(BenchScene, a_truth_of_noise_is_refused_with_what_is_needed) {

@@ -1,6 +1,9 @@
 #include "bench/markdown.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 #include "bench/text.h"
 #include "image/difference.h"
@@ -8,7 +11,7 @@
 namespace nepho::bench {
 namespace {
 
-constexpr const char* kParts[] = {kMarch, kSteps, kLightCache, kLevelOfDetail, kLightModel};
+constexpr const char* kParts[] = {kMarch, kSteps, kLightCache, kLevelOfDetail, kLightModel, kData};
 
 std::string cell(const Term* term) {
   if (!term) return " |";
@@ -20,6 +23,35 @@ std::string levels(double rmse) {
   char text[32];
   std::snprintf(text, sizeof text, " %.3g |", rmse);
   return text;
+}
+
+// Each reason once, with the terms that it holds for.
+std::string missing(const SceneResult& scene) {
+  std::vector<std::pair<std::string, std::string>> reasons;  // and the terms
+  for (const char* part : kParts)
+    for (const SettingResult& s : scene.settings) {
+      const Term* term = find_term(s.terms, part);
+      if (!term || term->told()) continue;
+      const auto known =
+          std::ranges::find(reasons, term->withheld, &std::pair<std::string, std::string>::first);
+      if (known == reasons.end())
+        reasons.emplace_back(term->withheld, part);
+      else if (known->second.find(part) == std::string::npos)
+        known->second += std::string(", ") + part;
+    }
+  std::string text;
+  for (const auto& [why, terms] : reasons) text += " Not told, " + terms + ": " + why + ".";
+  return text;
+}
+
+std::string references_of(const SceneResult& scene) {
+  std::string text = std::to_string(scene.reference.width) + "x" +
+                     std::to_string(scene.reference.height) +
+                     " pixels; finest bricks: " + scene.finest;
+  if (scene.paths)
+    text +=
+        "; " + std::to_string(scene.paths) + " paths a pixel, noise " + percent_text(scene.noise);
+  return text + ".";
 }
 
 }  // namespace
@@ -52,6 +84,7 @@ std::string markdown_of(const SceneResult& scene) {
     for (const char* part : kParts) text += cell(find_term(s.terms, part));
     text += "\n";
   }
+  text += "\n" + references_of(scene) + missing(scene) + "\n";
   return text;
 }
 

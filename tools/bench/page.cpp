@@ -112,7 +112,7 @@ void Page::row(const SceneResult& scene, const SettingResult& s, bool best) {
   add("<td>" + xml_text(time_text(s.times.view_s.median)) + "</td>");
   add("<td>" + std::to_string(s.bricks) + "</td>");
   for (const char* name : {kTotal, kMarch, kLightModel, kLevelOfDetail, kIntegration, kSteps,
-                           kLightCache, kQuantisation})
+                           kLightCache, kQuantisation, kData})
     share(find_term(s.terms, name), low, high);
   const Term* judged = find_term(s.terms, judged_by(scene.settings));
   for (const double value :
@@ -134,7 +134,7 @@ void Page::table(const SceneResult& scene, const std::vector<std::size_t>& front
       "<th>bricks</th>");
   for (const char* name :
        {"total", "all but<br/>light model", "light<br/>model", "level of<br/>detail", "integration",
-        "of it<br/>steps", "of it<br/>light cache", "quantisation"})
+        "of it<br/>steps", "of it<br/>light cache", "quantisation", "data"})
     add("<th>" + std::string(name) + "</th>");
   add("<th>bias</th><th>relative<br/>MSE</th><th>RMSE<br/>8 bit</th><th>FLIP<br/>mean</th>");
   add("</tr></thead>\n<tbody>\n");
@@ -145,6 +145,8 @@ void Page::table(const SceneResult& scene, const std::vector<std::size_t>& front
             std::string("Errors are the rms of luminance over its mean, where there is cloud (over "
                         "a planet: everywhere). Bold: on the front. Grey, below: the number would "
                         "not be five times what its reference is known to; why is under the mouse. "
+                        "Data: the finest bricks against the sources' own fields, both marched; no "
+                        "part of the total. "
                         "The last four columns are of ") +
                 (std::string(judged_by(scene.settings)) == kTotal ? "the total"
                                                                   : "all but the light model") +
@@ -171,7 +173,7 @@ void Page::fits(const SceneResult& scene) {
 }
 
 void Page::data(const SceneResult& scene) {
-  add("<h3>Data: the source's own field against its finest bricks</h3>\n<ul>\n");
+  add("<h3>Data: extinction of the source's own field against its finest bricks</h3>\n<ul>\n");
   for (const VolumeDataError& d : scene.data) {
     char line[200];
     if (d.error)

@@ -4,17 +4,20 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bench/text.h"
 #include "core/error.h"
 #include "gl/frame_data.h"
 #include "reference/error_metric.h"
 #include "reference/march_picture.h"
+#include "reference/own_field.h"
 
 namespace nepho::bench {
 namespace {
 
 constexpr double kSlowestStep_voxels = 0.5;    // no reference is coarser
 constexpr std::uint32_t kFirstForecast = 256;  // paths a pixel, before noise is extrapolated
-constexpr double kNotYet = -1;                 // a change that is not measured yet
+constexpr double kOwnPixels = 512;             // at least, where there are as many
+constexpr int kFinerSteps = 3;                 // in a cell, for the change of such a picture
 constexpr std::size_t kChangePixels = 256;     // on which a stricter march is compared
 
 int light_key(const RenderSettings& settings) {
@@ -27,10 +30,15 @@ std::uint64_t node_count(const Forest& forest) {
   return nodes;
 }
 
-// Without an end of finer levels that a machine could hold.
-bool is_endless(const RenderRequest& request) {
-  return std::ranges::any_of(request.volumes, [](const RenderVolume& volume) {
-    return volume.source->info().refine_by_variance;
+// Without an end of finer levels that so much memory could hold: the bricks of a source that makes
+// them as they are asked for are no file's.
+bool is_endless(const RenderRequest& request, double host_mib) {
+  return std::ranges::any_of(request.volumes, [&](const RenderVolume& volume) {
+    const VolumeInfo& info = volume.source->info();
+    double bytes = double(sizeof(LeafBrick)) * info.chart->roots();
+    for (const std::uint32_t cells : info.lattice.cells(info.lattice.max_level()))
+      bytes *= std::max(double(cells) / kBrickCells, 1.0);
+    return info.refine_by_variance && bytes > host_mib * 0x1p20;
   });
 }
 
@@ -62,7 +70,8 @@ RenderRequest References::request_with(const RenderSettings& settings) const {
 void References::make_finest(const RenderSettings& finest_of_sweep) {
   RenderRequest request = request_with(finest_of_sweep);
   request.settings.max_level = 31;
-  if (!is_endless(request)) try {
+  endless_ = is_endless(request, goals_.host_mib);
+  if (!endless_) try {
       finest_forest_ = finest_forest(request, goals_.host_mib);
       return;
     } catch (const Error&) {
@@ -132,14 +141,18 @@ HdrImage References::march(const LevelSet& levels, const RenderRequest& request,
 
 double References::march_change(const LevelSet& levels, const RenderRequest& request,
                                 const HdrImage& picture) const {
+  return change_by(RayMarch(levels, request, kStricterMarch, planet_), request, picture);
+}
+
+double References::change_by(const RayMarch& other, const RenderRequest& request,
+                             const HdrImage& picture) const {
   std::vector<std::size_t> counted, some;
   for (std::size_t p = 0; p < mask_.size(); ++p)
     if (mask_[p] > 0) counted.push_back(p);
   const std::size_t n = std::min(kChangePixels, counted.size());
   for (std::size_t i = 0; i < n; ++i) some.push_back(counted[i * counted.size() / n]);
-  const RayMarch march(levels, request, kStricterMarch, planet_);
   HdrImage strict{int(n), 1, {}, {}}, usual = strict;
-  for (const MarchResult& seen : march_pixels(march, request, some)) {
+  for (const MarchResult& seen : march_pixels(other, request, some)) {
     for (int c = 0; c < 3; ++c) strict.rgb.push_back(float(seen.radiance_W_per_m2_sr_nm[c]));
     strict.optical_depth.push_back(1);
   }
@@ -210,8 +223,14 @@ const Reference& References::finest(const RenderSettings& settings) {
     reference.change = march_change(levels, request, reference.picture);
     if (less_fine_) {
       const CutLevels coarser(*less_fine_);
-      const HdrImage image = masked(march(coarser, request, "the march on bricks less fine"));
-      reference.change = std::hypot(reference.change, picture_error(image, reference.picture));
+      const double finer = change_by(RayMarch(coarser, request, kReferenceMarch, planet_), request,
+                                     reference.picture);
+      // What has no end is held against a depth that is stated: the picture of those bricks is
+      // known, and what lies below them is in no number.
+      if (endless_)
+        beyond_ = finer;
+      else
+        reference.change = std::hypot(reference.change, finer);
     }
   }
   return reference;
@@ -262,11 +281,66 @@ const std::optional<Truth>& References::truth(std::span<const RenderSettings> se
   return *truth_;
 }
 
+const OwnPicture& References::own(const RenderSettings& settings) {
+  const LightKey key = light_key(settings);
+  const auto known = own_.find(key);
+  if (known != own_.end()) return known->second;
+  return own_.emplace(key, march_own(request_with(settings))).first->second;
+}
+
+OwnPicture References::march_own(const RenderRequest& request) {
+  if (endless_)
+    return {{}, "there are finer bricks than memory holds, and more in the source's own field"};
+  if (!holds_everything_)
+    return {{}, "the finest bricks are not all levels: more is needed (--host-mib)"};
+  const CutLevels bricks(finest_forest_);
+  std::optional<OwnField> field;
+  try {
+    field.emplace(bricks, request.volumes, 1);
+  } catch (const Error& error) {
+    return {{}, error.what()};
+  }
+  const OwnField finer(bricks, request.volumes, kFinerSteps);
+  const auto stride = std::size_t(std::max(1.0, std::sqrt(double(mask_.size()) / kOwnPixels)));
+  progress_.begin(Work::kMarch, "the march on the sources' own fields");
+  OwnPicture::Pair seen{{thinned(*field, request, stride), 0}, thinned(bricks, request, stride)};
+  // What finer steps change of the difference: light is looked at from other places too, by both.
+  const HdrImage own_finer = thinned(finer, request, 2 * stride),
+                 bricks_finer =
+                     thinned(BricksInSteps(finest_forest_, kFinerSteps), request, 2 * stride),
+                 bricks_usual = thinned(bricks, request, 2 * stride);
+  HdrImage own_usual = thinned(*field, request, 2 * stride);
+  for (std::size_t i = 0; i < own_usual.rgb.size(); ++i)
+    own_usual.rgb[i] += bricks_finer.rgb[i] - bricks_usual.rgb[i];
+  seen.own.change = picture_error(own_usual, own_finer);
+  progress_.end();
+  return {std::move(seen), ""};
+}
+
+// Every so many pixels of the picture on both axes, from the middle of the first such square.
+HdrImage References::thinned(const LevelSet& levels, const RenderRequest& request,
+                             std::size_t stride) const {
+  const auto width = std::size_t(request.settings.width),
+             height = std::size_t(request.settings.height);
+  std::vector<std::size_t> pixels;
+  HdrImage image{0, 0, {}, {}};
+  for (std::size_t y = stride / 2; y < height; y += stride, ++image.height)
+    for (std::size_t x = stride / 2; x < width; x += stride) pixels.push_back(y * width + x);
+  image.width = int(pixels.size()) / image.height;
+  const RayMarch march(levels, request, kOwnMarch, planet_);
+  for (const MarchResult& seen : march_pixels(march, request, pixels))
+    for (int c = 0; c < 3; ++c) image.rgb.push_back(float(seen.radiance_W_per_m2_sr_nm[c]));
+  for (const std::size_t p : pixels) image.optical_depth.push_back(mask_[p]);
+  return image;
+}
+
 std::string References::description() const {
   if (holds_everything_) return "all levels";
-  char text[120];
-  std::snprintf(text, sizeof text, "four times finer than the finest setting asks for%s",
-                finest_forest_.budget_bound ? ", as far as the memory for it goes" : "");
+  std::string text = "four times finer than the finest setting asks for";
+  if (finest_forest_.budget_bound) text += ", as far as the memory for it goes";
+  if (beyond_ != kNotYet)
+    text += " (bricks half as fine look " + percent_text(beyond_) +
+            " unlike; what is finer still is in no number)";
   return text;
 }
 

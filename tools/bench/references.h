@@ -39,6 +39,19 @@ struct Reference {
   double change = 0;
 };
 inline constexpr double kLeastRatio = 5;
+inline constexpr double kNotYet = -1;  // a change that is not measured yet
+
+// What the sources' own fields look like, and what their finest bricks do by the same march: every
+// second pixel, or fewer, so that there are 512 or more. Or why there are none.
+struct OwnPicture {
+  struct Pair {
+    Reference own;
+    HdrImage bricks;
+  };
+  std::optional<Pair> seen;
+  std::string why_not;
+};
+inline const MarchSettings kOwnMarch{.least_halvings = 1};
 
 // The path traced picture. `noise`: rms of the pixels' standard errors over mean luminance, of
 // those that count.
@@ -57,6 +70,7 @@ struct Truth {
 //   coarser_codes    the same with as much noise as 16-bit codes have
 //   finest           that march on the finest bricks
 //   truth            paths on the finest bricks
+//   own              a march over the sources' own fields, where the finest bricks are all levels
 //
 // The optical depths of all of them are one mask, 1 or 0, by the finest march: what counts in a
 // rms (over a planet all pixels but those on the sun's disc).
@@ -72,10 +86,12 @@ class References {
   // Paths until their noise is under a fifth of the smallest light model error of these settings,
   // or most_paths. Absent without path tracing.
   const std::optional<Truth>& truth(std::span<const RenderSettings> settings);
+  const OwnPicture& own(const RenderSettings& settings);
 
   // `image` with the scene's mask for its optical depths.
   HdrImage masked(HdrImage image) const;
-  std::string description() const;  // of the finest bricks: "all levels", or where they end
+  // Of the finest bricks: "all levels", or where they end.
+  std::string description() const;
 
  private:
   using LightKey = int;                                            // octaves
@@ -96,6 +112,11 @@ class References {
   // By a stricter march, on some of the pixels.
   double march_change(const LevelSet& levels, const RenderRequest& request,
                       const HdrImage& picture) const;
+  // Of `picture` by another march, on some of the pixels.
+  double change_by(const RayMarch& other, const RenderRequest& request,
+                   const HdrImage& picture) const;
+  OwnPicture march_own(const RenderRequest& request);
+  HdrImage thinned(const LevelSet& levels, const RenderRequest& request, std::size_t stride) const;
   double noise_of(const PathPicture& paths) const;
 
   const OpenedScene& opened_;
@@ -104,12 +125,14 @@ class References {
   std::shared_ptr<const PlanetModel> planet_;
   Forest finest_forest_;
   std::optional<Forest> less_fine_;  // where the finest is not all that there is
-  bool holds_everything_ = true;
+  bool holds_everything_ = true, endless_ = false;
+  double beyond_ = kNotYet;  // of what has no end: by bricks half as fine
   std::vector<float> mask_;
   std::map<std::tuple<double, int, double, double>, Tree> trees_;  // by what was asked for
   std::map<Key, Reference> fine_steps_, converged_;
   std::map<Key, HdrImage> coarser_codes_;
   std::map<LightKey, Reference> finest_;
+  std::map<LightKey, OwnPicture> own_;
   std::optional<std::optional<Truth>> truth_;
 };
 

@@ -152,7 +152,7 @@ void plan(const RunGoals& goals, const std::vector<SettingResult>& settings, Pro
                   s.settings.tolerance, s.settings.octaves);
   progress.plan(Work::kRender,
                 double(settings.size()) * (goals.repeats + 1) + 2 * double(trees.size()));
-  progress.plan(Work::kMarch, 1 + 2 * double(trees.size()));
+  progress.plan(Work::kMarch, 2 + 2 * double(trees.size()));
   if (goals.references.most_paths) progress.plan(Work::kPaths, 1);
 }
 
@@ -202,7 +202,6 @@ SceneResult run_scene(const OpenedScene& opened, const std::string& name, const 
 
   References references(opened, goals.references, progress, finest_of(result.settings));
   const std::optional<Truth>& truth = references.truth(all);
-  result.finest = references.description();
   result.reference = references.finest(all.front()).picture;
   if (truth) {
     result.paths = truth->paths;
@@ -218,9 +217,11 @@ SceneResult run_scene(const OpenedScene& opened, const std::string& name, const 
                       &references.converged(s.settings),
                       &references.coarser_codes(s.settings),
                       &references.finest(s.settings),
-                      truth ? &*truth : nullptr};
+                      truth ? &*truth : nullptr,
+                      &references.own(s.settings)};
     s.terms = decompose(chain, result.display);
   }
+  result.finest = references.description();
   // A truth that is too noisy to be told from the march is no picture to hold others against.
   const Term* light = find_term(result.settings.front().terms, kLightModel);
   if (light && light->told()) {

@@ -110,6 +110,10 @@ std::vector<Term> decompose(const Chain& c, const Display& display) {
         {c.finest->change, c.truth->noise, c.truth->paths});
   // Both marches take the same way: what one misses the other does.
   add(kQuantisation, *c.coarser_codes, c.converged->picture, {});
+  if (c.own && c.own->seen)
+    add(kData, c.own->seen->bricks, c.own->seen->own.picture, {c.own->seen->own.change});
+  else if (c.own)
+    terms.push_back({.name = kData, .withheld = c.own->why_not});
   return terms;
 }
 

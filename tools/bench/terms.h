@@ -41,6 +41,8 @@ struct Term {
 //   level of detail converged   against finest
 //   light model     finest      against truth
 //   quantisation    coarser_codes against converged
+//   data            finest      against own: what the finest bricks miss of the source, on every
+//                   second pixel or fewer; no part of the total, which goes by the bricks
 inline constexpr const char* kTotal = "total";
 inline constexpr const char* kMarch = "march";
 inline constexpr const char* kIntegration = "integration";
@@ -49,6 +51,7 @@ inline constexpr const char* kLightCache = "light cache";
 inline constexpr const char* kLevelOfDetail = "level of detail";
 inline constexpr const char* kLightModel = "light model";
 inline constexpr const char* kQuantisation = "quantisation";
+inline constexpr const char* kData = "data";
 
 // What a setting's picture is held against.
 struct Chain {
@@ -57,7 +60,8 @@ struct Chain {
   const Reference* converged;
   const HdrImage* coarser_codes;
   const Reference* finest;
-  const Truth* truth;  // null: no path tracing
+  const Truth* truth;               // null: no path tracing
+  const OwnPicture* own = nullptr;  // null: not asked for
 };
 
 // All terms of one setting. A number is told only where it is kLeastRatio times what its references

@@ -1,14 +1,19 @@
 #include "forecast/bricks/domain_state.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace nepho::forecast {
 
-std::optional<std::size_t> DomainState::cell_at(glm::dvec2 lat_lon_deg, glm::dvec2* nearby) const {
-  const auto [at, off_cells] =
-      nearby ? search.find(lat_lon_deg, *nearby) : search.find(lat_lon_deg);
-  if (off_cells > 0) return {};
-  if (nearby) *nearby = at;
+std::optional<std::size_t> DomainState::cell_at(glm::dvec2 lat_lon_deg,
+                                                std::optional<glm::dvec2>* nearby) const {
+  GridSearch::Found found =
+      nearby && *nearby ? search.find(lat_lon_deg, **nearby) : search.find(lat_lon_deg);
+  // A place without coordinates is no start.
+  if (std::isnan(found.off_cells)) found = search.find(lat_lon_deg);
+  const auto [at, off_cells] = found;
+  if (nearby) *nearby = off_cells == 0 ? std::optional(at) : std::nullopt;
+  if (!(off_cells <= 0)) return {};
   const auto index = [](double x, int n) { return std::size_t(std::min(int(x), n - 1)); };
   const std::size_t cell =
       index(at.y, columns.ny) * std::size_t(columns.nx) + index(at.x, columns.nx);

@@ -63,24 +63,16 @@ class Moment {
   double point_extinction_per_m(const Ellipsoid& body, const glm::dvec3& ecef_m) const {
     if (box_) return remap_.interpolated(ecef_m, HatRemap::Part::kTotal);
     const GeodeticPoint point = geodetic_point(body, ecef_m);
-    const glm::dvec2 deg{point.latitude_deg, point.longitude_deg};
-    for (const DomainState& domain : domains_)
-      if (const auto cell = domain.cell_at(deg))
-        return domain.extinction_per_m(*cell, point.height_m, options_.extend_below_m);
-    return 0;
+    const auto found = cell_at(point);
+    return found ? found->domain->extinction_per_m(found->cell, point.height_m,
+                                                   options_.extend_below_m)
+                 : 0;
   }
 
   // The column of the finest domain's own cell there; nothing where there is none.
   OwnColumn own_column(const Ellipsoid& body, const glm::dvec3& ecef_m) const {
-    const GeodeticPoint point = geodetic_point(body, ecef_m);
-    // Places are asked for in clusters: the last one's is a start, and no more than that.
-    thread_local std::vector<glm::dvec2> nearby;
-    nearby.resize(std::max(nearby.size(), domains_.size()));
-    for (std::size_t n = 0; n < domains_.size(); ++n)
-      if (const auto cell =
-              domains_[n].cell_at({point.latitude_deg, point.longitude_deg}, &nearby[n]))
-        return domains_[n].column(*cell, options_.extend_below_m);
-    return {};
+    const auto found = cell_at(geodetic_point(body, ecef_m));
+    return found ? found->domain->column(found->cell, options_.extend_below_m) : OwnColumn{};
   }
 
   std::uint64_t bytes() const {
@@ -94,6 +86,24 @@ class Moment {
   }
 
  private:
+  struct DomainCell {
+    const DomainState* domain;
+    std::size_t cell;
+  };
+  // Of the finest domain that has one there. Who asks along a ray asks next beside the last place:
+  // a fifth of a search from nothing.
+  std::optional<DomainCell> cell_at(const GeodeticPoint& point) const {
+    thread_local const Moment* asked = nullptr;
+    thread_local std::vector<std::optional<glm::dvec2>> last;
+    if (asked != this) last.assign(domains_.size(), {});
+    asked = this;
+    for (std::size_t n = 0; n < domains_.size(); ++n)
+      if (const auto cell =
+              domains_[n].cell_at({point.latitude_deg, point.longitude_deg}, &last[n]))
+        return DomainCell{&domains_[n], *cell};
+    return {};
+  }
+
   SparsePyramid pyramid(const Layout& layout, HatRemap::Part part) const {
     SparsePyramid::Field field;
     field.nodes = box_ ? box_->nodes(remap_, part) : remap_.nodes(part);
