@@ -134,20 +134,21 @@ void PlanetPasses::upload() {
   check_errors("upload of the planet");
 }
 
-void PlanetPasses::draw_sun_map(const std::string& switches) {
+void PlanetPasses::draw_sun_map(Programs& programs, const std::string& switches) {
   const int size = scene_.map_size;
   sun_map_ = make_texture_array(size, size, scene_.map_bands);
   map_bytes_ = 16 * std::uint64_t(size) * std::uint64_t(size) * std::uint64_t(scene_.map_bands);
   glBindImageTexture(0, sun_map_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  dispatch_blocks(compile("sun_map", nepho_shader_sun_map, switches), size, size);
+  dispatch_blocks(programs.get("sun_map", nepho_shader_sun_map, switches), size, size);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   glBindTextureUnit(kSunMapUnit, sun_map_.id());
 }
 
-std::vector<PixelTexel> PlanetPasses::ground_distances(const std::string& switches) {
+std::vector<PixelTexel> PlanetPasses::ground_distances(Programs& programs,
+                                                       const std::string& switches) {
   const int width = request_.settings.width, height = request_.settings.height;
   glBindImageTexture(1, met_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  dispatch_blocks(compile("surface", nepho_shader_surface, switches), width, height);
+  dispatch_blocks(programs.get("surface", nepho_shader_surface, switches), width, height);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   return read_texels(met_.id(), width, height);
 }

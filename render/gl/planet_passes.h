@@ -7,6 +7,7 @@
 #include "gl/object.h"
 #include "gl/pixel_plan.h"
 #include "gl/planet_data.h"
+#include "gl/programs.h"
 
 namespace nepho::gl {
 
@@ -20,9 +21,9 @@ class PlanetPasses {
   const PlanetScene& scene() const { return scene_; }
   void upload();
   // What the clouds leave of the sun, for the air; `switches` as for the light passes.
-  void draw_sun_map(const std::string& switches);
+  void draw_sun_map(Programs& programs, const std::string& switches);
   // In the last component of each pixel's, row 0 first.
-  std::vector<PixelTexel> ground_distances(const std::string& switches);
+  std::vector<PixelTexel> ground_distances(Programs& programs, const std::string& switches);
   void add_to(RenderReport& report) const;
   // As uploaded; null without air.
   std::shared_ptr<const AirTables> tables() const { return tables_; }
