@@ -114,7 +114,10 @@ void Renderer::upload() {
     ice_ = gl::Buffer(std::span<const BrickRecord>(scene_.ice));
     ice_.bind(8);
   }
-  if (planet_) planet_->upload();
+  if (planet_) {
+    planet_->upload();
+    planet_->bind();
+  }
 }
 
 void Renderer::light() {
@@ -293,9 +296,15 @@ RenderResult Renderer::run() {
   timed("upload", [&] { upload(); });
   light();
   if (planet_ && planet_->scene().sun_map)
-    timed("sun map", [&] { planet_->draw_sun_map(programs_, defines(false)); });
+    timed("sun map", [&] {
+      for (int part = 0; part < planet_->sun_map_parts(); ++part)
+        planet_->draw_sun_map_part(programs_, defines(false), part);
+    });
   if (planet_)
-    timed("surface", [&] { values_.met = planet_->ground_distances(programs_, defines(false)); });
+    timed("surface", [&] {
+      values_.met = planet_->ground_distances(programs_, defines(false), request_.settings.width,
+                                              request_.settings.height);
+    });
   timed("view", [&] { view(); });
   if (planet_) timed("ground", [&] { ground(); });
   make_image();
