@@ -2,7 +2,6 @@
 #include "renderer.h"
 
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <optional>
 #include <string>
@@ -10,11 +9,11 @@
 #include "core/error.h"
 #include "gl/atlas.h"
 #include "gl/frame_data.h"
-#include "gl/gpu_clock.h"
 #include "gl/ground_pass.h"
 #include "gl/light_pass.h"
 #include "gl/light_samples.h"
 #include "gl/object.h"
+#include "gl/picture.h"
 #include "gl/planet_passes.h"
 #include "gl/programs.h"
 #include "gl/switches.h"
@@ -33,16 +32,6 @@ constexpr double kFilterError = 3.0 / 512;  // of weights of 8 bits (lattice.md 
 // 1.4e-3 on a thin ball, 2e-4 and less on thick ones, plume, forecast and LES.
 constexpr double kSparedLightError = 2e-3;
 
-double process_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-struct Counters {  // march.glsl: CounterBuffer
-  std::uint32_t overruns = 0, rays = 0, extinction_samples = 0, source_samples = 0;
-};
-
 class Renderer {
  public:
   explicit Renderer(const RenderRequest& request) : request_(request) {}
@@ -56,7 +45,6 @@ class Renderer {
   void light();
   void view();
   void ground();
-  void make_image();
   void keep_lights();
   void read_counters();
   void report();
@@ -76,13 +64,7 @@ class Renderer {
 };
 
 void Renderer::timed(const char* name, const std::function<void()>& work) {
-  const double before_s = process_cpu_s();
-  gl::GpuClock clock;
-  work();
-  const double gpu_s = clock.stop_s();
-  glFinish();
-  gl::check_errors(name);
-  result_.report.passes.push_back({name, process_cpu_s() - before_s, gpu_s});
+  gl::timed(result_.report.passes, name, work);
 }
 
 std::string Renderer::defines(bool lit) const {
@@ -100,7 +82,7 @@ void Renderer::upload() {
   bricks_ = gl::Buffer(std::span<const BrickRecord>(scene_.bricks));
   phases_ = gl::Buffer(std::span<const float>(scene_.phases));
   lit_ = gl::Buffer(std::span<const LitRecord>(scene_.lit));
-  const Counters none{};
+  const gl::MarchCounters none{};
   counters_ = gl::Buffer(&none, sizeof none);
   GLuint binding = 0;
   for (const gl::Buffer* buffer :
@@ -170,24 +152,10 @@ void Renderer::ground() {
       gl::light_ground(request_, forest_, scene_.frame, planet_->scene(), program, values_);
 }
 
-void Renderer::make_image() {
-  HdrImage& image = result_.image;
-  image.width = request_.settings.width;
-  image.height = request_.settings.height;
-  const std::size_t pixels = values_.seen.size();
-  image.rgb.resize(3 * pixels);
-  image.optical_depth.resize(pixels);
-  for (std::size_t p = 0; p < pixels; ++p) {
-    for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * p + c] = values_.seen[p][c];
-    image.optical_depth[p] = values_.seen[p][3];
-  }
-  values_ = {};
-}
-
 // llvmpipe ends all loops of an invocation after 65535 iterations: a picture that lost some is
 // refused, not shown.
 void Renderer::read_counters() {
-  Counters counters;
+  gl::MarchCounters counters;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glGetNamedBufferSubData(counters_.id(), 0, sizeof counters, &counters);
   result_.report.samples = {double(counters.rays), double(counters.extinction_samples),
@@ -307,7 +275,8 @@ RenderResult Renderer::run() {
     });
   timed("view", [&] { view(); });
   if (planet_) timed("ground", [&] { ground(); });
-  make_image();
+  result_.image = gl::picture_of(values_, request_.settings.width, request_.settings.height);
+  values_ = {};
   read_counters();
   if (request_.keep_lights) keep_lights();
   if (request_.settings.probe_pixels > 0)
