@@ -29,6 +29,8 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope render wrfout_d01.nc --sun 2005-08-28T23:00Z --no-planet -o evening.png
   nephoscope render scene.json --target-error 1% -o fine.exr   the settings are chosen, and said
   nephoscope render smoke.png --engine reference --noise 1% -o true.exr   the same, path traced
+  nephoscope view                                        a window: fly over the procedural planet
+  nephoscope view wrfout_d01.nc                          through a forecast; drop files to open them
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
   nephoscope info wrfout_d01.nc --check                  and how well the bricks hold it
   nephoscope compare a.exr b.exr                         how far two pictures are apart
@@ -65,6 +67,13 @@ void add_data_options(CLI::App& command, Text& grid, Text& up, Text& metres_per_
   command.add_option("--density-scale", density_scale, "extinction (1/m) of density 1")
       ->group("Data");
   command.add_option("--frame", frame, "frame of a sequence name.####.vdb")->group("Data");
+}
+
+void add_drawn_data_options(CLI::App& command, RenderOptions& o) {
+  command.add_option("--fps", o.fps, "frames per second of a sequence (24)")->group("Data");
+  command.add_flag("--force", o.force, "draw values that no cloud has (NetCDF, GRIB)")
+      ->group("Data");
+  command.add_option("--region", o.region, kRegion)->group("Data");
 }
 
 void add_camera_options(CLI::App& command, RenderOptions& o) {
@@ -183,6 +192,17 @@ void add_bench_options(CLI::App& command, BenchOptions& o) {
                      "voxels, of what steps are measured against (a quarter of the finest step)");
 }
 
+void add_view_options(CLI::App& command, ViewOptions& o) {
+  command.add_option("--frames", o.frames, "end after so many, and say how long they took");
+  CLI::Option* path =
+      command.add_option("--path", o.path, "fly along what --record wrote, and end");
+  command.add_option("--record", o.record, "write the flight to this file")->excludes(path);
+  command.add_option("--bench", o.bench, "times of all passes, median and worst: .csv or .json");
+  command.add_option("--screenshot", o.screenshot, "at the end, a picture at full quality");
+  command.add_option("--coarse", o.coarse,
+                     "frames have every Nth pixel of the window (as the device can bear)");
+}
+
 // A value given twice is a bad value; CLI11 calls it the same as a missing one.
 void refuse_repeated(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands())
@@ -209,13 +229,23 @@ int run(int argc, char** argv) {
   add_camera_options(*draw, render);
   add_data_options(*draw, render.grid, render.up, render.metres_per_unit, render.density_scale,
                    render.frame);
-  draw->add_option("--fps", render.fps, "frames per second of a sequence (24)")->group("Data");
-  draw->add_flag("--force", render.force, "draw values that no cloud has (NetCDF, GRIB)")
-      ->group("Data");
-  draw->add_option("--region", render.region, kRegion)->group("Data");
+  add_drawn_data_options(*draw, render);
   draw->add_flag("--explain-macros", render.explain_macros, "")->group("");
   draw->footer(kExamples);
   draw->callback([&] { render_command(render); });
+
+  ViewOptions view;
+  CLI::App* fly = app.add_subcommand("view", "a window to fly through a scene");
+  fly->add_option("INPUT", view.render.inputs,
+                  "SCENE.json, PICTURE, or data FILES; none: the procedural planet");
+  add_view_options(*fly, view);
+  add_quality_options(*fly, view.render);
+  add_camera_options(*fly, view.render);
+  add_data_options(*fly, view.render.grid, view.render.up, view.render.metres_per_unit,
+                   view.render.density_scale, view.render.frame);
+  add_drawn_data_options(*fly, view.render);
+  fly->footer(kExamples);
+  fly->callback([&] { view_command(view); });
 
   InfoOptions info;
   CLI::App* tell = app.add_subcommand("info", "what is in a file, a scene or a picture");
