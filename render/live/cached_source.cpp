@@ -43,6 +43,7 @@ void CachedSource::keep(Entry entry) const {
 }
 
 Status CachedSource::summary(NodeKey key, double time_s, NodeSummary& summary) const noexcept {
+  if (stopped_) return Status::kReadFailed;
   const Place place{key.packed(), time_s, kSummary};
   try {
     const std::lock_guard lock(mutex_);
@@ -63,6 +64,7 @@ Status CachedSource::summary(NodeKey key, double time_s, NodeSummary& summary) c
 }
 
 Status CachedSource::read(NodeKey key, double time_s, BrickView brick) const noexcept {
+  if (stopped_) return Status::kReadFailed;
   try {
     const std::lock_guard lock(mutex_);
     std::size_t known = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <list>
 #include <mutex>
@@ -29,6 +30,9 @@ class CachedSource : public BrickSource {
   std::size_t last_error(char* buffer, std::size_t size) const noexcept override {
     return source_.last_error(buffer, size);
   }
+
+  // What is asked for from now on fails at once: whoever reads is to come to an end.
+  void stop() const { stopped_ = true; }
 
   struct Counts {
     std::uint64_t bytes = 0, bricks_read = 0, bricks_remembered = 0;
@@ -63,6 +67,7 @@ class CachedSource : public BrickSource {
 
   const BrickSource& source_;
   std::uint64_t most_bytes_;
+  mutable std::atomic<bool> stopped_ = false;
   mutable std::mutex mutex_;
   mutable std::list<Entry> entries_;  // last used first
   mutable std::unordered_map<Place, std::list<Entry>::iterator, Hash> places_;

@@ -23,6 +23,7 @@ namespace nepho {
 namespace {
 
 constexpr GLuint kCounterBinding = 6;
+constexpr std::size_t kRefreshes = 4;
 
 RenderRequest live(RenderRequest request) {
   request.any_tree = true;
@@ -67,9 +68,10 @@ class LiveRenderer::Impl {
 
   void begin(std::unique_ptr<LiveTree> tree);
   bool upload_some();
-  bool light_some(ResidentTree& tree, std::uint64_t light, std::vector<std::size_t>& leaves);
+  void light_some(ResidentTree& tree, std::uint64_t light, std::vector<std::size_t>& leaves);
   bool advance();
   void list_stale();
+  void refresh_some();
   void bind(ResidentTree& tree, const FrameData& frame);
 
   LiveLimits limits_;
@@ -88,6 +90,7 @@ class LiveRenderer::Impl {
   std::unique_ptr<ResidentTree> shown_;
   std::uint64_t shown_light_ = 0;
   std::vector<std::size_t> stale_;  // leaves of shown_, those in the picture last: taken from there
+  std::size_t unseen_stale_ = 0;    // a frame is worth it when no more than these are left
   std::optional<Next> next_;
   bool changed_ = false;  // since the last frame
 };
@@ -110,8 +113,17 @@ bool LiveRenderer::Impl::update() {
   if (next_)
     changed_ = advance() || changed_;
   else if (!stale_.empty())
-    changed_ = light_some(*shown_, shown_light_, stale_) || changed_;
+    refresh_some();
   return changed_;
+}
+
+// A frame costs more than a batch of light: it is worth one after a share of what was stale.
+void LiveRenderer::Impl::refresh_some() {
+  light_some(*shown_, shown_light_, stale_);
+  if (stale_.size() > unseen_stale_) return;
+  unseen_stale_ = stale_.size() - stale_.size() / kRefreshes;
+  if (stale_.size() < kRefreshes) unseen_stale_ = 0;
+  changed_ = true;
 }
 
 // Two trees always have room: each is charged for half of the slots at most.
@@ -161,6 +173,7 @@ void LiveRenderer::Impl::list_stale() {
     for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf)
       if (leaves[leaf].seen == seen && slots_[shown_->slot(leaf)].lit_for != shown_light_)
         stale_.push_back(leaf);
+  unseen_stale_ = stale_.size() - stale_.size() / kRefreshes;
 }
 
 // True where some were left to do.
@@ -185,7 +198,7 @@ bool LiveRenderer::Impl::upload_some() {
 }
 
 // A batch from the end of `leaves`.
-bool LiveRenderer::Impl::light_some(ResidentTree& tree, std::uint64_t light,
+void LiveRenderer::Impl::light_some(ResidentTree& tree, std::uint64_t light,
                                     std::vector<std::size_t>& leaves) {
   const std::size_t count =
       std::min(leaves.size(), std::size_t(std::clamp(light_tiles_, 1, limits_.light_tiles)));
@@ -212,7 +225,6 @@ bool LiveRenderer::Impl::light_some(ResidentTree& tree, std::uint64_t light,
                               1, limits_.light_tiles);
   for (const std::uint32_t slot : places) slots_[slot].lit_for = light;
   counts_.tiles_lit += count;
-  return true;
 }
 
 bool LiveRenderer::Impl::at_rest() const {

@@ -21,6 +21,7 @@ TreeWorker::~TreeWorker() {
     const std::lock_guard lock(mutex_);
     stop_ = true;
     next_.reset();
+    for (const auto& [source, cached] : sources_) cached->stop();
   }
   wake_.notify_one();
   thread_.join();

@@ -218,5 +218,19 @@ TEST_F(Live, ASourceThatFailsLeavesThePictureBefore) {
   EXPECT_FALSE(live.status().failure);
 }
 
+TEST_F(Live, EndsWhileItReads) {
+  const FieldSource source = puffs();
+  const SlowSource slow(source, std::chrono::milliseconds(50));
+  const auto begin = std::chrono::steady_clock::now();
+  {
+    LiveRenderer live(puffs_request(slow));
+    while (slow.reads == 0) std::this_thread::yield();
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  EXPECT_LT(slow.reads, 100);  // of 190: what was begun is ended
+  std::printf("measured: ended after %.2f s and %d reads of 50 ms\n", took.count(),
+              int(slow.reads));
+}
+
 }  // namespace
 }  // namespace nepho::test

@@ -19,8 +19,8 @@ namespace {
 
 // A frame is to be there within the first, and need not be sooner than the second.
 constexpr double kSlow_ms = 90, kQuick_ms = 22;
-constexpr int kCoarsest = 8, kStartCoarse = 4;
-constexpr int kInARow = 6;
+constexpr int kCoarsest = 8, kStartCoarse = 6;
+constexpr int kSlowInARow = 2, kQuickInARow = 8;
 
 std::optional<PlanetGround> ground_of(const OpenedScene& opened) {
   const auto body = body_of(opened);
@@ -166,14 +166,16 @@ bool ViewSession::advance(int width, int height) {
   return true;
 }
 
+// Cost goes with the pixels: coarser at once, finer a step at a time.
 void ViewSession::choose_coarseness(double frame_ms) {
   if (fixed_coarse_) return;
   slow_ = frame_ms > kSlow_ms ? slow_ + 1 : 0;
   quick_ = frame_ms < kQuick_ms ? quick_ + 1 : 0;
-  if (slow_ >= kInARow && coarse_ < kCoarsest) {
-    ++coarse_;
+  if (slow_ >= kSlowInARow && coarse_ < kCoarsest) {
+    const double times = std::sqrt(frame_ms / kSlow_ms);
+    coarse_ = std::min(int(std::ceil(coarse_ * times)), kCoarsest);
     slow_ = 0;
-  } else if (quick_ >= kInARow && coarse_ > 1) {
+  } else if (quick_ >= kQuickInARow && coarse_ > 1) {
     --coarse_;
     quick_ = 0;
   }
@@ -212,8 +214,9 @@ void ViewSession::fill(Panel& panel) const {
                  line("frame %dx%d, %.1f ms", frame_.width, frame_.height, frame_ms_)};
   for (const PassReport& pass : status_.passes)
     panel.lines.push_back(line("  %s %.1f ms", pass.name.c_str(), 1e3 * pass.cpu_s));
-  panel.lines.push_back(line("%lu leaves of %lu nodes%s", status_.leaves, status_.nodes,
-                             status_.budget_bound ? ", the budget is full" : ""));
+  panel.lines.push_back(
+      line("%lu leaves of %lu nodes%s", status_.leaves, status_.nodes,
+           status_.complete && status_.budget_bound ? ", the budget is full" : ""));
   panel.lines.push_back(line("%.1f of %.0f MiB, %lu bricks read", double(status_.bytes) / kMib,
                              double(status_.budget_bytes) / kMib, status_.bricks_read));
   if (status_.failure) panel.lines.push_back(status_.failure->what());

@@ -34,8 +34,9 @@ bool draw_quality(Panel& panel) {
 
 void draw_panel(Panel& panel) {
   ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowSize({330, 0}, ImGuiCond_FirstUseEver);
-  ImGui::Begin("Nephoscope");
+  ImGui::SetNextWindowSizeConstraints({330, 0}, {480, ImGui::GetIO().DisplaySize.y - 16});
+  ImGui::Begin("Nephoscope", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PushTextWrapPos(310);
   ImGui::TextUnformatted(panel.scene.c_str());
   if (!panel.message.empty()) {
     if (panel.message_is_error) ImGui::PushStyleColor(ImGuiCol_Text, {1.0f, 0.6f, 0.4f, 1.0f});
@@ -59,6 +60,7 @@ void draw_panel(Panel& panel) {
       "W A S D Q E move, shift faster, control slower; drag turns, wheel: height's speed or "
       "distance; M mode, R back to the start, F12 picture at full quality; drop files to open "
       "them");
+  ImGui::PopTextWrapPos();
   ImGui::End();
 }
 

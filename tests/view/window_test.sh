@@ -1,0 +1,76 @@
+#!/bin/sh
+# window_test.sh PROGRAM FOLDER CASE: the window on a display without a screen.
+set -eu
+program=$1
+folder=$2
+what=$3
+rm -rf "$folder"
+mkdir -p "$folder"
+cd "$folder"
+cat > scene.json <<'EOF'
+{"name": "a ball", "volumes": [{"name": "ball", "source": "analytic",
+ "parameters": {"kind": "sphere", "radius": "0.5 km", "extinction_per_m": 0.01, "max_level": 2}}],
+ "camera": {"fov_deg": 40},
+ "sun": {"azimuth_deg": 120, "elevation_deg": 40}, "image": {"width": 96, "height": 54},
+ "render": {"budget_mib": 32, "light": "single", "probe_pixels": 8, "probe_paths": 0}}
+EOF
+view() {
+  timeout 100 xvfb-run -a -s "-screen 0 640x480x24" "$program" view "$@"
+}
+fail() {
+  echo "FAILED: $1"
+  exit 1
+}
+says() {  # says TEXT FILE
+  grep -q -- "$1" "$2" || { cat "$2"; fail "'$1' is not said"; }
+}
+case $what in
+  no_display)
+    if env -u DISPLAY -u WAYLAND_DISPLAY "$program" view scene.json --frames 3 2> said; then
+      fail "a window without a display"
+    fi
+    says "no display" said
+    says "nephoscope render" said
+    ;;
+  old_opengl)
+    if MESA_GL_VERSION_OVERRIDE=3.3 view scene.json --frames 3 2> said; then
+      fail "OpenGL 3.3 is enough"
+    fi
+    says "OpenGL 3.3" said
+    says "4.5" said
+    ;;
+  bad_input)
+    echo "no cloud" > broken.nc
+    if view broken.nc --frames 3 2> said; then fail "a broken file is shown"; fi
+    says "broken.nc" said
+    printf 'P6\n2 1\n255\nabcdef' > bare.ppm
+    if view bare.ppm --frames 3 2> said; then fail "a picture without a scene is shown"; fi
+    says "bare.ppm" said
+    if view scene.json --path none.json 2> said; then fail "a path that is not there"; fi
+    says "none.json" said
+    ;;
+  flight)
+    view scene.json --frames 40 --record flown.json --screenshot shot.ppm > said 2>&1 ||
+      { cat said; fail "the first flight"; }
+    says "longest block" said
+    cat said
+    [ "$(grep -c eye_m flown.json)" = 40 ] || fail "not 40 cameras"
+    view scene.json --path flown.json --bench times.csv > said 2>&1 || { cat said; fail "replay"; }
+    says "^gap,39," times.csv
+    says "^view," times.csv
+    view scene.json --path flown.json --bench times.json > said 2>&1 || fail "replay"
+    says '"worst_ms"' times.json
+    # The picture brings its view back: drawn again, it is the same.
+    "$program" render shot.ppm -o again.ppm > said
+    "$program" compare shot.ppm again.ppm > said
+    cat said
+    view shot.ppm --frames 20 --screenshot third.ppm > said 2>&1 || { cat said; fail "restored"; }
+    # Twice the same pixels.
+    tail -c 15552 shot.ppm > a
+    tail -c 15552 again.ppm > b
+    tail -c 15552 third.ppm > c
+    cmp a b || fail "render draws another picture than the window"
+    cmp a c || fail "the window restores another view"
+    ;;
+  *) fail "no such case: $what" ;;
+esac
