@@ -13,6 +13,7 @@
 #include "gl/view_pass.h"
 #include "live/fingerprint.h"
 #include "live/light_batch.h"
+#include "live/pixel_shares.h"
 #include "live/resident_tree.h"
 #include "live/tree_worker.h"
 
@@ -52,7 +53,9 @@ class LiveRenderer::Impl {
   void set(const RenderRequest& request);
   bool update();
   bool at_rest() const;
-  HdrImage frame();
+  const RenderSettings& settings() const { return request_.settings; }
+  HdrImage frame(int each);
+  bool whole() const { return !changed_ && shares_.whole(); }
   LiveStatus status() const;
 
  private:
@@ -70,6 +73,7 @@ class LiveRenderer::Impl {
   bool upload_some();
   void light_some(ResidentTree& tree, std::uint64_t light, std::vector<std::size_t>& leaves);
   bool advance();
+  HdrImage march(int each);
   void list_stale();
   void refresh_some();
   void bind(ResidentTree& tree, const FrameData& frame);
@@ -93,6 +97,7 @@ class LiveRenderer::Impl {
   std::size_t unseen_stale_ = 0;    // a frame is worth it when no more than these are left
   std::optional<Next> next_;
   bool changed_ = false;  // since the last frame
+  PixelShares shares_;
 };
 
 void LiveRenderer::Impl::set(const RenderRequest& request) {
@@ -243,17 +248,26 @@ void LiveRenderer::Impl::bind(ResidentTree& tree, const FrameData& frame) {
   if (ice_) glBindTextureUnit(2, ice_atlas_.id());
 }
 
-HdrImage LiveRenderer::Impl::frame() {
-  changed_ = false;
+HdrImage LiveRenderer::Impl::frame(int each) {
   if (!shown_) return {};
+  if (changed_ || each != shares_.each() || shares_.whole())
+    shares_.begin(each, request_.settings.width, request_.settings.height);
+  changed_ = false;
+  shares_.add(march(each));
+  return shares_.picture();
+}
+
+// The next share.
+HdrImage LiveRenderer::Impl::march(int each) {
   const LiveTree& tree = shown_->tree();
   RenderRequest request = *tree.request;
   request.camera = request_.camera;
-  request.settings.width = request_.settings.width;
-  request.settings.height = request_.settings.height;
+  request.settings.width = request_.settings.width / each;
+  request.settings.height = request_.settings.height / each;
   const int width = request.settings.width, height = request.settings.height;
   FrameData frame = tree.scene.frame;
   gl::set_camera(frame, request.camera, request.settings);
+  shift_to_share(frame, each, shares_.offset());
   bind(*shown_, frame);
   counts_.passes.clear();
   gl::PixelValues values;
@@ -321,8 +335,15 @@ bool LiveRenderer::update() {
 bool LiveRenderer::at_rest() const {
   return impl_->at_rest();
 }
-HdrImage LiveRenderer::frame() {
-  return impl_->frame();
+HdrImage LiveRenderer::frame(int each) {
+  const RenderSettings& settings = impl_->settings();
+  if (each < 1 || (each & (each - 1)) || settings.width % each || settings.height % each)
+    throw Error({"a picture cannot be marched in such shares", "frame",
+                 "a power of two that divides width and height", std::to_string(each), ""});
+  return impl_->frame(each);
+}
+bool LiveRenderer::whole() const {
+  return impl_->whole();
 }
 LiveStatus LiveRenderer::status() const {
   return impl_->status();

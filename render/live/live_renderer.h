@@ -50,8 +50,13 @@ class LiveRenderer {
   // Nothing is left to do for the last request (or it failed: status().failure).
   bool at_rest() const;
   // From the camera of the last request, in its size, with the tree that is there; empty before the
-  // first.
-  HdrImage frame();
+  // first. With `each`, a power of two that divides width and height: only every so many'th pixel
+  // of rows and columns is marched, a small picture; where nothing has changed, further frames
+  // march the others, until the picture is whole. What was marched before a change is not used
+  // after it.
+  HdrImage frame(int each = 1);
+  // The last frame is all that there is to see: update() says when there is more.
+  bool whole() const;
   LiveStatus status() const;
 
  private:

@@ -70,6 +70,43 @@ TEST_F(Live, ComesBackFromAFlight) {
               status.tiles_lit, status.trees);
 }
 
+// Sixteen shares of every fourth pixel are the picture; one alone is a small one of it.
+TEST_F(Live, SharesOfThePixelsMakeTheWhole) {
+  const FieldSource source = puffs(), over_planet = puffs(kRadius_m);
+  for (const bool planet : {false, true}) {
+    const RenderRequest request =
+        planet ? planet_puffs_request(over_planet) : puffs_request(source);
+    const HdrImage truth = render(request).image;
+    LiveRenderer live(request);
+    ASSERT_TRUE(settle(live));
+    HdrImage picture;
+    double before = 1e9;
+    for (int share = 1; share <= 16; ++share) {
+      ASSERT_FALSE(live.whole());
+      EXPECT_EQ(live.update(), share == 1);
+      picture = live.frame(4);
+      EXPECT_EQ(picture.width, share == 1 ? 16 : 64);
+      if (share == 4 || share == 16) {  // a grid of every second pixel, and all
+        const double off = apart(picture, truth);
+        EXPECT_LT(off, before);
+        before = off;
+      }
+    }
+    EXPECT_TRUE(live.whole());
+    report_accuracy("A view that moves",
+                    planet ? "in 16 shares, over a planet" : "in 16 shares, in a box", before,
+                    kAtRest, "1");
+    EXPECT_LE(before, kAtRest);
+    // A change throws them all away.
+    RenderRequest moved = request;
+    moved.camera.eye_m.z += 1;
+    live.set(moved);
+    EXPECT_FALSE(live.whole());
+    EXPECT_EQ(live.frame(4).width, 16);
+    EXPECT_THROW(live.frame(3), Error);
+  }
+}
+
 TEST_F(Live, FollowsTheSun) {
   const FieldSource source = puffs();
   RenderRequest request = puffs_request(source);

@@ -199,8 +199,9 @@ void add_view_options(CLI::App& command, ViewOptions& o) {
   command.add_option("--record", o.record, "write the flight to this file")->excludes(path);
   command.add_option("--bench", o.bench, "times of all passes, median and worst: .csv or .json");
   command.add_option("--screenshot", o.screenshot, "at the end, a picture at full quality");
-  command.add_option("--coarse", o.coarse,
-                     "frames have every Nth pixel of the window (as the device can bear)");
+  command.add_option(
+      "--coarse", o.coarse,
+      "1, 2, 4 or 8: in motion, every Nth pixel of the window (as the device can bear)");
 }
 
 // A value given twice is a bad value; CLI11 calls it the same as a missing one.

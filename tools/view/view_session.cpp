@@ -18,8 +18,8 @@ namespace nepho {
 namespace {
 
 // A frame is to be there within the first, and need not be sooner than the second.
-constexpr double kSlow_ms = 90, kQuick_ms = 22;
-constexpr int kCoarsest = 8, kStartCoarse = 6;
+constexpr double kSlow_ms = 90, kQuick_ms = 18;
+constexpr int kCoarsest = 8, kStartCoarse = 8;
 constexpr int kSlowInARow = 2, kQuickInARow = 8;
 
 std::optional<PlanetGround> ground_of(const OpenedScene& opened) {
@@ -61,12 +61,8 @@ ViewSession::ViewSession(OpenedScene opened, int coarse)
     time_ =
         int(std::ranges::find(times_s, opened_.request.volumes[timed_].time_s) - times_s.begin());
   }
-  // A frame has as many pixels as it gets; the first is small, so that it is soon there.
-  RenderRequest first = opened_.request;
-  first.settings.probe_pixels = 0;
-  first.settings.width = std::max(first.settings.width / coarse_, 16);
-  first.settings.height = std::max(first.settings.height / coarse_, 9);
-  live_ = std::make_unique<LiveRenderer>(first);
+  live_ = std::make_unique<LiveRenderer>(
+      wanted(opened_.request.settings.width, opened_.request.settings.height));
 }
 
 void ViewSession::act(const WindowInput& input, double seconds) {
@@ -128,23 +124,30 @@ void ViewSession::set_time(int index) {
     opened_.request.sun.to_sun = sun_position(utc_of(clock, time_s)).to_sun;
 }
 
-bool ViewSession::advance(int width, int height) {
-  RenderRequest wanted = opened_.request;
-  wanted.camera = flight_.camera();
-  wanted.settings.probe_pixels = 0;
-  wanted.settings.width = std::max(width / coarse_, 16);
-  wanted.settings.height = std::max(height / coarse_, 9);
+// Of a window of this size, in sides that any coarseness divides.
+RenderRequest ViewSession::wanted(int width, int height) const {
+  RenderRequest request = opened_.request;
+  request.camera = flight_.camera();
+  request.settings.probe_pixels = 0;
+  request.settings.width = std::max(width / kCoarsest, 1) * kCoarsest;
+  request.settings.height = std::max(height / kCoarsest, 1) * kCoarsest;
   std::vector<RenderVolume> volumes;
   for (std::size_t v = 0; v < shown_.size(); ++v)
-    if (shown_[v]) volumes.push_back(wanted.volumes[v]);
-  wanted.volumes = std::move(volumes);
-  live_->set(wanted);
+    if (shown_[v]) volumes.push_back(request.volumes[v]);
+  request.volumes = std::move(volumes);
+  return request;
+}
+
+bool ViewSession::advance(int width, int height) {
+  live_->set(wanted(width, height));
   const bool changed = live_->update();
   bool fresh = false;
-  if (changed) {
+  if (changed || !live_->whole()) {
     const auto begin = std::chrono::steady_clock::now();
     const std::size_t programs = status_.programs;
-    frame_ = live_->frame();
+    // Once it stands still the shares go on as they began.
+    if (changed) each_ = coarse_;
+    frame_ = live_->frame(each_);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     status_ = live_->status();
     frame_ms_ = took.count();
@@ -172,11 +175,11 @@ void ViewSession::choose_coarseness(double frame_ms) {
   slow_ = frame_ms > kSlow_ms ? slow_ + 1 : 0;
   quick_ = frame_ms < kQuick_ms ? quick_ + 1 : 0;
   if (slow_ >= kSlowInARow && coarse_ < kCoarsest) {
-    const double times = std::sqrt(frame_ms / kSlow_ms);
-    coarse_ = std::min(int(std::ceil(coarse_ * times)), kCoarsest);
+    const double times = std::max(std::sqrt(frame_ms / kSlow_ms), 1.01);
+    while (coarse_ < kCoarsest && coarse_ < times * each_) coarse_ *= 2;
     slow_ = 0;
   } else if (quick_ >= kQuickInARow && coarse_ > 1) {
-    --coarse_;
+    coarse_ /= 2;
     quick_ = 0;
   }
 }
@@ -208,7 +211,7 @@ void ViewSession::fill(Panel& panel) const {
     panel.time_text =
         info.time_origin_ns != 0 ? utc_text(utc_of(info, time_s)) : line("%.6g s", time_s);
   }
-  panel.busy = !live_->at_rest();
+  panel.busy = !at_rest();
   constexpr double kMib = 1024.0 * 1024.0;
   panel.lines = {line("height %.0f m, speed %.3g m/s", flight_.height_m(), flight_.speed_m_per_s()),
                  line("frame %dx%d, %.1f ms", frame_.width, frame_.height, frame_ms_)};

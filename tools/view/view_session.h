@@ -16,7 +16,8 @@ namespace nepho {
 // made; throws Error where the budget is too small.
 class ViewSession {
  public:
-  // `coarse`: a frame has every so many pixels of the window; 0: as the device can bear.
+  // `coarse`: while something changes, a frame has every so many'th pixel of the window, 1, 2, 4 or
+  // 8; 0: as the device can bear.
   ViewSession(OpenedScene opened, int coarse);
 
   // What the user did, and what he changed in the panel that fill() was called for.
@@ -29,12 +30,13 @@ class ViewSession {
   const ByteImage& picture() const { return picture_; }
   const Camera& camera() const { return flight_.camera(); }
   const LiveStatus& status() const { return status_; }
-  bool at_rest() const { return live_->at_rest(); }
+  bool at_rest() const { return live_->at_rest() && live_->whole(); }
   void fill(Panel& panel) const;
   // The scene as it is seen now, to be drawn in this size.
   const OpenedScene& as_seen(int width, int height);
 
  private:
+  RenderRequest wanted(int width, int height) const;
   LocalAxes axes() const;
   void set_time(int index);
   void choose_coarseness(double frame_ms);
@@ -45,7 +47,7 @@ class ViewSession {
   std::size_t timed_ = 0;  // the volume whose times the slider has
   Flight flight_;
   bool fixed_coarse_;
-  int coarse_;
+  int coarse_, each_ = 1;     // of the next picture; of the one that is being made
   int slow_ = 0, quick_ = 0;  // frames in a row
   std::optional<double> exposure_ev_;
   bool exposure_found_ = false;  // and may be found again in a finer tree
