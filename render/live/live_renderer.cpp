@@ -56,6 +56,7 @@ class LiveRenderer::Impl {
   const RenderSettings& settings() const { return request_.settings; }
   HdrImage frame(int each);
   bool whole() const { return !changed_ && shares_.whole(); }
+  bool streaming() const { return next_ || !stale_.empty(); }
   LiveStatus status() const;
 
  private:
@@ -341,6 +342,9 @@ HdrImage LiveRenderer::frame(int each) {
     throw Error({"a picture cannot be marched in such shares", "frame",
                  "a power of two that divides width and height", std::to_string(each), ""});
   return impl_->frame(each);
+}
+bool LiveRenderer::streaming() const {
+  return impl_->streaming();
 }
 bool LiveRenderer::whole() const {
   return impl_->whole();

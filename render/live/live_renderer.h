@@ -47,6 +47,8 @@ class LiveRenderer {
   void set(const RenderRequest& request);
   // One step of upload and light. True where the next frame is another than the last.
   bool update();
+  // update() has bricks to upload or light to work out: a picture made meanwhile is not the last.
+  bool streaming() const;
   // Nothing is left to do for the last request (or it failed: status().failure).
   bool at_rest() const;
   // From the camera of the last request, in its size, with the tree that is there; empty before the

@@ -192,7 +192,7 @@ bool Viewer::frame() {
   window_->show(picture.values.empty() ? nullptr : picture.values.data(), picture.width,
                 picture.height, panel_);
   // Nothing new: the next look need not be at once, and whoever reads or refines has the processor.
-  if (!fresh && !replay_) std::this_thread::sleep_for(std::chrono::milliseconds(4));
+  if (!fresh && !replay_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   return most_frames_ == 0 || int(times_.size()) < most_frames_;
 }
 

@@ -142,7 +142,8 @@ bool ViewSession::advance(int width, int height) {
   live_->set(wanted(width, height));
   const bool changed = live_->update();
   bool fresh = false;
-  if (changed || !live_->whole()) {
+  // The rest of a picture that is soon another one is not worth the time.
+  if (changed || (!live_->whole() && !live_->streaming())) {
     const auto begin = std::chrono::steady_clock::now();
     const std::size_t programs = status_.programs;
     // Once it stands still the shares go on as they began.
