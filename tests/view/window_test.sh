@@ -1,5 +1,5 @@
 #!/bin/sh
-# window_test.sh PROGRAM FOLDER CASE: the window on a display without a screen.
+# window_test.sh PROGRAM FOLDER CASE [MAKE_SAMPLES]: the window on a display without a screen.
 set -eu
 program=$1
 folder=$2
@@ -71,6 +71,25 @@ case $what in
     tail -c 15552 third.ppm > c
     cmp a b || fail "render draws another picture than the window"
     cmp a c || fail "the window restores another view"
+    ;;
+  samples)
+    "$4" made --size small > said
+    for file in made/*.vdb made/*.nc; do
+      view "$file" --frames 60 --size 160x90 > said 2>&1 || { cat said; fail "$file"; }
+      says "longest block" said
+      echo "$file: $(grep 'longest block' said)"
+    done
+    # Nothing named: the planet.
+    view --frames 60 --size 160x90 > said 2>&1 || { cat said; fail "the planet"; }
+    says "longest block" said
+    echo "planet: $(grep 'longest block' said)"
+    ;;
+  forecast)
+    # While it is read, refined, uploaded and lit.
+    "$4" made --size 200x200x40 > said
+    view made/*.nc --frames 500 --size 320x180 > said 2>&1 || { cat said; fail "the forecast"; }
+    says "longest block" said
+    cat said
     ;;
   *) fail "no such case: $what" ;;
 esac
