@@ -91,5 +91,19 @@ case $what in
     says "longest block" said
     cat said
     ;;
+  memory)
+    # 2000 frames of a flight in circles take no more than the first 400 of them.
+    for frames in 400 2000; do
+      awk -v n=$frames 'BEGIN { print "{\"cameras\": ["; for (i = 0; i < n; ++i) { a = i * 0.02
+        printf "%s{\"eye_m\": [%.3f, %.3f, 300], \"target_m\": [0, 0, %.3f], \"up\": [0, 0, 1], \"fov_rad\": 0.7}\n",
+          i ? "," : "", 1500 * cos(a), 1500 * sin(a), 100 * sin(7 * a) } print "]}" }' > path.json
+      view scene.json --size 160x90 --coarse 2 --path path.json > said 2>&1 ||
+        { cat said; fail "$frames frames"; }
+      sed -n 's/peak memory \(.*\) MiB/\1/p' said > peak.$frames
+      says "frames; below" said
+    done
+    echo "measured: peak memory after 400 and 2000 frames: $(cat peak.400) and $(cat peak.2000) MiB"
+    [ "$(cat peak.2000)" -le $(($(cat peak.400) + 4)) ] || fail "memory grows"
+    ;;
   *) fail "no such case: $what" ;;
 esac

@@ -123,7 +123,12 @@ void Viewer::take_opened() {
     OpenedScene opened = opening_.get();
     auto session = std::make_unique<ViewSession>(std::move(opened), coarse_);
     session_ = std::move(session);
-    panel_.message.clear();
+    Panel empty;  // what it says is of the scene before, but for why another one was not opened
+    if (panel_.message_is_error) {
+      empty.message = panel_.message;
+      empty.message_is_error = true;
+    }
+    panel_ = empty;
   } catch (const Error& error) {
     if (!session_ && most_frames_ > 0) throw;
     say(error.what(), true);
@@ -147,7 +152,7 @@ fs::path Viewer::free_name() const {
 void Viewer::save(const fs::path& output) {
   const PictureFormat format = picture_format(output);
   pictures_.check_format(output);
-  const OpenedScene& seen = session_->as_seen(size_.x, size_.y);
+  const OpenedScene seen = session_->as_seen(size_.x, size_.y);
   OutputFile file(output, largest_size(seen.scene.render, format));
   const RenderResult result = render(seen.request);
   const std::string error = error_line(result.error);
@@ -210,6 +215,7 @@ void Viewer::run() {
               status.leaves, double(status.bytes) / 1048576, double(status.budget_bytes) / 1048576,
               status.bricks_read, status.bricks_uploaded, status.tiles_lit,
               session_->at_rest() ? "at rest" : "not at rest");
+  std::printf("peak memory %.0f MiB\n", usage_now().peak_mib);
   if (!panel_.message.empty()) std::printf("%s\n", panel_.message.c_str());
 }
 

@@ -226,27 +226,30 @@ void ViewSession::fill(Panel& panel) const {
   if (status_.failure) panel.lines.push_back(status_.failure->what());
 }
 
-const OpenedScene& ViewSession::as_seen(int width, int height) {
-  opened_.request.camera = flight_.camera();
-  RenderSettings& settings = opened_.request.settings;
+OpenedScene ViewSession::as_seen(int width, int height) const {
+  OpenedScene seen{opened_.scene, {}, opened_.request, opened_.assumptions};
+  RenderSettings& settings = seen.request.settings;
   settings.width = width;
   settings.height = height;
-  Scene& scene = opened_.scene;
+  settings.engine = Engine::kMarch;  // what draws it here, whatever drew it before
+  const Camera& camera = flight_.camera();
+  seen.request.camera = camera;
+  Scene& scene = seen.scene;
   scene.render = settings;
   scene.target = {};
-  const Camera& camera = flight_.camera();
-  scene.camera = {};
-  scene.camera.eye_m = camera.eye_m;
-  scene.camera.target_m = camera.target_m;
-  scene.camera.up = camera.up;
-  scene.camera.vertical_fov_rad = camera.vertical_fov_rad;
-  scene.sun.to_sun = opened_.request.sun.to_sun;
-  scene.exposure_ev = exposure_ev_;
+  scene.camera = {camera.eye_m, camera.target_m, camera.up, camera.vertical_fov_rad, {}, {}};
+  scene.sun.to_sun = seen.request.sun.to_sun;
+  scene.exposure_ev = exposure_ev_.value_or(0);
   for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
-    scene.volumes[v].time_s = opened_.request.volumes[v].time_s;
+    scene.volumes[v].time_s = seen.request.volumes[v].time_s;
     scene.volumes[v].utc_ns.reset();
   }
-  return opened_;
+  for (std::size_t v = shown_.size(); v-- > 0;) {
+    if (shown_[v]) continue;
+    scene.volumes.erase(scene.volumes.begin() + std::ptrdiff_t(v));
+    seen.request.volumes.erase(seen.request.volumes.begin() + std::ptrdiff_t(v));
+  }
+  return seen;
 }
 
 }  // namespace nepho

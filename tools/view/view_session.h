@@ -32,8 +32,8 @@ class ViewSession {
   const LiveStatus& status() const { return status_; }
   bool at_rest() const { return live_->at_rest() && live_->whole(); }
   void fill(Panel& panel) const;
-  // The scene as it is seen now, to be drawn in this size.
-  const OpenedScene& as_seen(int width, int height);
+  // The scene as it is seen now, to be drawn in this size. Its sources stay here.
+  OpenedScene as_seen(int width, int height) const;
 
  private:
   RenderRequest wanted(int width, int height) const;
