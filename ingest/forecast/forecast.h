@@ -46,6 +46,8 @@ struct ForecastColumns {
   std::vector<float> interface_m;           // [cell * (nz + 1) + k], rising; over the ellipsoid
   std::vector<float> extinction_per_m;      // [cell * nz + k]; liquid and ice; >= 0, finite
   std::vector<float> ice_extinction_per_m;  // the ice part; empty where the data have no ice
+  // [cell]: all of its water is missing, so that it covers no coarser domain; empty: none.
+  std::vector<char> without_data;
 };
 
 // The model's own ground, [j * nx + i]; empty vectors where the file has none.
@@ -59,6 +61,14 @@ struct VariableBytes {
   std::uint64_t read = 0, held = 0;
 };
 
+class Forecast;
+
+// A domain at one of its own times.
+struct DomainTime {
+  const Forecast* domain;
+  std::size_t time;
+};
+
 // Thread-safe; reads under the host's I/O lock. Throws Error.
 class Forecast {
  public:
@@ -70,6 +80,9 @@ class Forecast {
   virtual std::shared_ptr<const HorizontalGrid> grid(std::size_t time) const = 0;
   virtual ForecastColumns columns(std::size_t time) const = 0;
   virtual ForecastGround ground(std::size_t time) const = 0;
+  // What is drawn at a time, finest first: of nests several, each in place of all after it where it
+  // has cells. grid, columns and ground are those of the first.
+  virtual std::vector<DomainTime> domains(std::size_t time) const { return {{this, time}}; }
   // Lowest and highest interface over all times, and the thickness of the thin layers
   // that hold cloud: a tenth of all optical depth is in thinner ones.
   virtual glm::dvec2 height_range_m() const = 0;

@@ -82,6 +82,34 @@ TEST(GribMalformed, DamagedInTheMiddle) {
           {"message 2 at byte " + std::to_string(second), "section 1"});
 }
 
+// Packed numbers of a later time: what came before is read, and that time refused in one message.
+TEST(GribMalformed, DamagedInTheMiddleOfARun) {
+  GribTwin twin;
+  twin.packing = "grid_jpeg";
+  const std::string first = twin.all(0);
+  std::string bytes = first + twin.all(6);
+  // The data of the last message: its end stays.
+  const std::size_t last = bytes.rfind("GRIB"), length = bytes.size() - last;
+  std::fill(bytes.begin() + std::ptrdiff_t(bytes.size() - length / 4), bytes.end() - 4, '\xff');
+  const std::string path = write_bytes("later.grib2", bytes);
+  const auto forecast = open({path});
+  ASSERT_EQ(forecast->times_s().size(), 2u);
+  EXPECT_EQ(forecast->columns(0).extinction_per_m,
+            open({write_bytes("first.grib2", first)})->columns(0).extinction_per_m);
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  std::string text;
+  try {
+    forecast->columns(1);
+  } catch (const Error& e) {
+    text = e.what();
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  for (const std::string& part : {path, "byte " + std::to_string(last), std::string("clwmr")})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+}
+
 TEST(GribMalformed, ShorterWhileItIsRead) {
   const std::string path = write_bytes("shrinks.grib2", whole());
   const GribFile file({path}, {});

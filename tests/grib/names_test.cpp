@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <numbers>
+#include <span>
 
+#include "forecast/water/water.h"
 #include "grib_twin.h"
+#include "sources/grib/parameter_table.h"
 
 namespace nepho::grib::test {
 namespace {
@@ -35,55 +40,80 @@ std::string at(const GribFile& file, const std::string& name, const std::string&
   return v ? v->text(attribute) : "no variable " + name;
 }
 
-// What centres send, by their own numbers: name and standard_name that conventions look for.
-TEST(GribNames, CentresHaveTheirNumbers) {
-  struct Case {
-    int edition;
-    Keys what;
-    const char *name, *standard_name;
-  };
-  const std::vector<Case> cases = {
+// What centres send, by their own numbers: name and standard_name that conventions look for. `a`,
+// `b`, `c`: discipline, category and number; centre, table and number.
+struct Case {
+  int edition;
+  std::array<int, 3> row;
+  Keys what;
+  const char *name, *standard_name;
+};
+Case second(long centre, int discipline, int category, int number, const char* name,
+            const char* standard_name) {
+  return {2,
+          {discipline, category, number},
+          grib2(centre, discipline, category, number),
+          name,
+          standard_name};
+}
+Case first(long centre, int table, int number, const char* name, const char* standard_name) {
+  return {1, {int(centre), table, number}, grib1(centre, table, number), name, standard_name};
+}
+
+std::vector<Case> all_cases() {
+  constexpr const char* kLiquid = "mass_fraction_of_cloud_liquid_water_in_air";
+  constexpr const char* kIce = "mass_fraction_of_cloud_ice_in_air";
+  constexpr const char* kRain = "mass_fraction_of_rain_in_air";
+  constexpr const char* kSnow = "mass_fraction_of_snow_in_air";
+  constexpr const char* kFraction = "cloud_area_fraction_in_atmosphere_layer";
+  return {
       // NCEP
-      {2, grib2(7, 0, 1, 22), "clwmr", ""},
-      {2, grib2(7, 0, 1, 23), "icmr", ""},
-      {2, grib2(7, 0, 1, 24), "rwmr", ""},
-      {2, grib2(7, 0, 1, 25), "snmr", ""},
-      {2, grib2(7, 0, 1, 32), "grle", ""},
-      {1, grib1(7, 2, 153), "clwmr", ""},
-      {1, grib1(7, 2, 178), "icmr", ""},
+      second(7, 0, 1, 22, "clwmr", ""), second(7, 0, 1, 23, "icmr", ""),
+      second(7, 0, 1, 24, "rwmr", ""), second(7, 0, 1, 25, "snmr", ""),
+      second(7, 0, 1, 32, "grle", ""), second(7, 0, 1, 82, "icmr", ""),
+      second(7, 0, 6, 23, "icmr", ""), second(7, 0, 6, 1, "tcc", kFraction),
+      first(7, 2, 153, "clwmr", ""), first(7, 2, 170, "rwmr", ""), first(7, 2, 171, "snmr", ""),
+      first(7, 2, 178, "icmr", ""), first(7, 2, 179, "grle", ""),
       // ECMWF
-      {2, grib2(98, 0, 1, 83), "clwc", "mass_fraction_of_cloud_liquid_water_in_air"},
-      {2, grib2(98, 0, 1, 84), "ciwc", "mass_fraction_of_cloud_ice_in_air"},
-      {2, grib2(98, 0, 1, 85), "crwc", "mass_fraction_of_rain_in_air"},
-      {2, grib2(98, 0, 1, 86), "cswc", "mass_fraction_of_snow_in_air"},
-      {2, grib2(98, 0, 6, 32), "cc", "cloud_area_fraction_in_atmosphere_layer"},
-      {1, grib1(98, 128, 246), "clwc", "mass_fraction_of_cloud_liquid_water_in_air"},
-      {1, grib1(98, 128, 247), "ciwc", "mass_fraction_of_cloud_ice_in_air"},
-      {1, grib1(98, 128, 130), "t", "air_temperature"},
-      {1, grib1(98, 128, 133), "q", "specific_humidity"},
-      {1, grib1(98, 128, 248), "cc", "cloud_area_fraction_in_atmosphere_layer"},
+      second(98, 0, 1, 83, "clwc", kLiquid), second(98, 0, 1, 84, "ciwc", kIce),
+      second(98, 0, 1, 85, "crwc", kRain), second(98, 0, 1, 86, "cswc", kSnow),
+      second(98, 0, 6, 32, "cc", kFraction), first(98, 128, 246, "clwc", kLiquid),
+      first(98, 128, 247, "ciwc", kIce), first(98, 128, 75, "crwc", kRain),
+      first(98, 128, 76, "cswc", kSnow), first(98, 128, 130, "t", "air_temperature"),
+      first(98, 128, 133, "q", "specific_humidity"), first(98, 128, 248, "cc", kFraction),
+      first(98, 128, 54, "pres", "air_pressure"), first(98, 128, 129, "z", "geopotential"),
+      first(98, 128, 156, "gh", "geopotential_height"),
+      first(98, 128, 157, "r", "relative_humidity"),
       // DWD
-      {2, grib2(78, 0, 1, 22), "qc", ""},
-      {2, grib2(78, 0, 1, 82), "qi", ""},
-      {2, grib2(78, 0, 1, 24), "qr", ""},
-      {2, grib2(78, 0, 1, 25), "qs", ""},
-      {2, grib2(78, 0, 1, 32), "qg", ""},
-      {2, grib2(78, 0, 6, 22), "clc", "cloud_area_fraction_in_atmosphere_layer"},
-      {1, grib1(78, 201, 31), "qc", ""},
-      {1, grib1(78, 201, 33), "qi", ""},
-      // HARMONIE
-      {1, grib1(82, 253, 76), "clwc", "mass_fraction_of_cloud_liquid_water_in_air"},
-      {1, grib1(82, 253, 58), "ciwc", "mass_fraction_of_cloud_ice_in_air"},
+      second(78, 0, 1, 22, "qc", ""), second(78, 0, 1, 82, "qi", ""),
+      second(78, 0, 1, 24, "qr", ""), second(78, 0, 1, 25, "qs", ""),
+      second(78, 0, 1, 32, "qg", ""), second(78, 0, 6, 22, "clc", kFraction),
+      first(78, 201, 31, "qc", ""), first(78, 201, 33, "qi", ""), first(78, 201, 35, "qr", ""),
+      first(78, 201, 36, "qs", ""), first(78, 201, 39, "qg", ""),
+      first(78, 201, 29, "clc", kFraction),
+      // HIRLAM and HARMONIE
+      first(82, 253, 76, "clwc", kLiquid), first(82, 253, 58, "ciwc", kIce),
+      first(82, 253, 181, "crwc", kRain), first(82, 253, 184, "cswc", kSnow),
+      first(82, 253, 201, "grle", "mass_fraction_of_graupel_in_air"),
       // All
-      {2, grib2(34, 0, 0, 0), "t", "air_temperature"},
-      {2, grib2(34, 0, 1, 0), "q", "specific_humidity"},
-      {2, grib2(34, 0, 1, 1), "r", "relative_humidity"},
-      {2, grib2(34, 0, 3, 5), "gh", "geopotential_height"},
-      {2, grib2(34, 0, 3, 4), "z", "geopotential"},
-      {1, grib1(34, 2, 11), "t", "air_temperature"},
-      {1, grib1(34, 2, 7), "gh", "geopotential_height"},
-  };
-  for (const Case& c : cases) {
+      second(34, 0, 0, 0, "t", "air_temperature"), second(34, 0, 1, 0, "q", "specific_humidity"),
+      second(34, 0, 1, 1, "r", "relative_humidity"),
+      second(34, 0, 1, 2, "mixr", "humidity_mixing_ratio"),
+      second(34, 0, 3, 0, "pres", "air_pressure"), second(34, 0, 3, 5, "gh", "geopotential_height"),
+      second(34, 0, 3, 4, "z", "geopotential"), second(34, 0, 3, 6, "altitude", "altitude"),
+      second(34, 0, 6, 28, "qndrop", ""),
+      second(34, 0, 6, 30, "qndrop", "number_concentration_of_cloud_liquid_water_particles_in_air"),
+      second(34, 0, 6, 38, "lwc", "mass_concentration_of_cloud_liquid_water_in_air"),
+      second(34, 0, 6, 39, "iwc", "mass_concentration_of_cloud_ice_in_air"),
+      first(34, 2, 11, "t", "air_temperature"), first(34, 2, 7, "gh", "geopotential_height"),
+      first(34, 2, 1, "pres", "air_pressure"), first(34, 2, 6, "z", "geopotential"),
+      first(34, 2, 8, "altitude", "altitude"), first(34, 2, 51, "q", "specific_humidity"),
+      first(34, 2, 52, "r", "relative_humidity"),
+      first(34, 2, 53, "mixr", "humidity_mixing_ratio")};
+}
+
+TEST(GribNames, CentresHaveTheirNumbers) {
+  for (const Case& c : all_cases()) {
     const GribFile file(
         {write_bytes("name.grib", one(c.edition, c.what, isobaric(c.edition, 500), 1e-4))}, {});
     EXPECT_EQ(at(file, c.name, "standard_name"), c.standard_name) << c.name;
@@ -95,6 +125,78 @@ TEST(GribNames, CentresHaveTheirNumbers) {
   const GribFile own({write_bytes("own.grib", one(1, grib1(98, 128, 11), isobaric(1, 500), 1))},
                      {});
   EXPECT_EQ(own.find("t"), nullptr);
+}
+
+// Rows marked as behind made files are those of the cases above, and of the tests of the ground, of
+// hybrid levels and of ICON's cells.
+TEST(GribNames, MarksAreTrue) {
+  const std::vector<Case> cases = all_cases();
+  const auto is_elsewhere = [](const ParameterRow& row) {
+    for (const char* name : {"lnsp", "lsm", "clat", "clon"})
+      if (row.name == std::string(name)) return true;
+    return false;
+  };
+  const auto check = [&](int edition, std::span<const ParameterRow> rows) {
+    ASSERT_FALSE(rows.empty());
+    for (const ParameterRow& row : rows) {
+      const auto fits = [](int wanted, int is) { return wanted < 0 || wanted == is; };
+      const bool made = std::ranges::any_of(cases, [&](const Case& c) {
+        return c.edition == edition && fits(row.a, c.row[0]) && fits(row.b, c.row[1]) &&
+               row.c == c.row[2] && row.name == std::string(c.name);
+      });
+      const bool marked = row.evidence == forecast::Evidence::kMade;
+      EXPECT_TRUE(!marked || made || is_elsewhere(row)) << text_of(row) << " is marked only";
+    }
+  };
+  check(1, parameter_table(1));
+  check(2, parameter_table(2));
+  check(2, parameter_table_of_dwd());
+}
+
+// A local number that no table knows, in g/kg; a known number that is something else here.
+TEST(GribNames, AUserTellsWhatNumbersAre) {
+  const std::string path = folder() / "model.names";
+  std::ofstream(path) << "cloud_water grib2:0/1/200 units=g/kg per=dry_air\n"
+                         "temperature grib2:0/0/201 units=K\n"
+                         "rain clwmr\n";
+  std::string bytes;
+  for (const double hPa : {900, 800, 700}) {
+    bytes += one(2, grib2(34, 0, 1, 200), isobaric(2, hPa), hPa == 800 ? 0.4 : 0);
+    bytes += one(2, grib2(34, 0, 0, 201), isobaric(2, hPa), 280);
+    bytes += one(2, grib2(34, 0, 1, 22), isobaric(2, hPa), hPa == 900 ? 1e-4 : 0);
+    bytes += one(2, grib2(34, 0, 1, 0), isobaric(2, hPa), 0.02);
+  }
+  forecast::OpenRequest request;
+  request.files = {write_bytes("user.grib2", bytes)};
+  request.names_file = path;
+  const auto f = open_grib(request);
+  EXPECT_TRUE(says(f->facts(), "3 of 3 rows of " + path + " are of this file."));
+  const forecast::ForecastColumns c = f->columns(0);
+  const auto density = [](double Pa) { return Pa / (287.058 * 280 * (1 + 0.608 * 0.02)); };
+  const double content = 4e-4 * 0.98 * density(80000);
+  const double radius = forecast::droplet_radius_m(content, forecast::droplets_over(0));
+  EXPECT_NEAR(
+      double(c.extinction_per_m[1]) / (content * forecast::droplet_extinction_m2_per_kg(radius)), 1,
+      2e-3);
+  const double rain = 1e-4 * density(90000);
+  EXPECT_NEAR(double(c.extinction_per_m[0]) / (rain * forecast::precipitation_extinction_m2_per_kg(
+                                                          forecast::Species::kRain, rain, 280)),
+              1, 2e-3);
+}
+
+// Cloud fraction on levels and nothing else: a stated water.
+TEST(GribNames, FractionAloneHasAStatedWater) {
+  std::string bytes;
+  for (const double hPa : {900, 800, 700}) {
+    bytes += one(2, grib2(98, 0, 6, 32), isobaric(2, hPa), hPa == 800 ? 0.5 : 0);
+    bytes += one(2, grib2(98, 0, 0, 0), isobaric(2, hPa), 280);
+  }
+  const auto f = open({write_bytes("fraction.grib2", bytes)});
+  EXPECT_TRUE(says(f->assumptions(), "There is no cloud water, only the cloud fraction cc"));
+  const forecast::ForecastColumns c = f->columns(0);
+  EXPECT_EQ(c.extinction_per_m[0], 0);
+  EXPECT_GT(c.extinction_per_m[1], 1e-3f);
+  EXPECT_EQ(c.extinction_per_m[2], 0);
 }
 
 TEST(GribNames, GroundIsNamedAsGround) {

@@ -325,5 +325,56 @@ TEST(Malformed, WrfWithoutItsAir) {
   refused(path, {"lacks a variable", "PH"});
 }
 
+// A chunk of a later time: what came before is read, and that time refused.
+TEST(Malformed, DamagedInTheMiddleOfARun) {
+  const auto written = [](double change) {
+    const std::string path = folder() / "later.nc";
+    {
+      NcWriter nc(path, NC_NETCDF4);
+      nc.dimension("time", 2);
+      nc.dimension("lev", 4);
+      nc.dimension("lat", 5);
+      nc.dimension("lon", 6);
+      nc.variable("time", NC_DOUBLE, {"time"}, {0, 6},
+                  {{"units", std::string("hours since 2020-01-01")}});
+      nc.variable("lev", NC_DOUBLE, {"lev"}, {100, 500, 900, 1300},
+                  {{"units", std::string("m")}, {"standard_name", std::string("altitude")}});
+      nc.variable("lat", NC_DOUBLE, {"lat"}, {1, 2, 3, 4, 5},
+                  {{"units", std::string("degrees_north")}});
+      nc.variable("lon", NC_DOUBLE, {"lon"}, {1, 2, 3, 4, 5, 6},
+                  {{"units", std::string("degrees_east")}});
+      std::vector<double> water;
+      for (int n = 0; n < 240; ++n)
+        water.push_back(n < 120 ? 1e-4 : 1e-4 + 1e-6 * (n % 37) + change * (n % 11));
+      nc.variable("clw", NC_FLOAT, {"time", "lev", "lat", "lon"}, water,
+                  {{"units", std::string("kg m-3")}}, {1, 4, 5, 6});
+    }
+    return bytes_of(path);
+  };
+  // The second time's chunk is where two files differ that are alike before.
+  std::string bytes = written(0);
+  const std::string other = written(3e-7);
+  ASSERT_EQ(bytes.size(), other.size());
+  const auto differ = std::mismatch(bytes.begin(), bytes.end(), other.begin());
+  ASSERT_NE(differ.first, bytes.end());
+  std::fill_n(differ.first + 20, 24, '\0');
+  const std::string path = write_bytes("later_damaged.nc", bytes);
+  const auto forecast = open(path);
+  ASSERT_EQ(forecast->times_s().size(), 2u);
+  EXPECT_GT(forecast->columns(0).extinction_per_m[0], 0);
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  std::string text;
+  try {
+    forecast->columns(1);
+  } catch (const Error& e) {
+    text = e.what();
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  for (const std::string& part : {path, std::string("[clw]"), std::string("damaged")})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+}
+
 }  // namespace
 }  // namespace nepho::forecast::test

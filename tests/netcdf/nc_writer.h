@@ -33,14 +33,20 @@ class NcWriter {
   void dimension(const std::string& name, std::size_t size) {
     check(nc_def_dim(id_, name.c_str(), size, &dimensions_[name]));
   }
-  // Numbers are attributes of the variable's own type where it is one of numbers.
+  // Numbers are attributes of the variable's own type where it is one of numbers. Chunks have a
+  // checksum.
   void variable(const std::string& name, int type, const std::vector<std::string>& dimensions,
-                const std::vector<double>& values, const Attributes& attributes = {}) {
+                const std::vector<double>& values, const Attributes& attributes = {},
+                const std::vector<std::size_t>& checked_chunks = {}) {
     int variable = 0;
     std::vector<int> ids;
     for (const auto& d : dimensions) ids.push_back(dimensions_.at(d));
     nc_redef(id_);
     check(nc_def_var(id_, name.c_str(), type, int(ids.size()), ids.data(), &variable));
+    if (!checked_chunks.empty()) {
+      check(nc_def_var_chunking(id_, variable, NC_CHUNKED, checked_chunks.data()));
+      check(nc_def_var_fletcher32(id_, variable, NC_FLETCHER32));
+    }
     for (const auto& [key, value] : attributes) attribute(variable, key, value, type);
     nc_enddef(id_);
     if (!values.empty()) check(nc_put_var_double(id_, variable, values.data()));

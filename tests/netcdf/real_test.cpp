@@ -2,10 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
+#include "accuracy_report.h"
 #include "core/error.h"
+#include "forecast/conventions/names.h"
+#include "forecast/water/air.h"
+#include "forecast/water/water.h"
 #include "geo/place.h"
 #include "nc_writer.h"
 #include "optical_depths.h"
@@ -13,6 +19,7 @@
 #include "sources/netcdf/open_netcdf.h"
 
 namespace nepho::forecast {
+using nepho::test::report_accuracy;
 namespace {
 
 std::unique_ptr<Forecast> open(const std::string& name) {
@@ -136,6 +143,130 @@ TEST(RealFiles, UnifiedModel) {
   EXPECT_GT(total / in_cloud, 0.7);
   EXPECT_LT(total / in_cloud, 1.4);
   EXPECT_GT(xy / std::sqrt(xx * yy), 0.9);
+}
+
+// Each layer of stratiform cloud. The file's optical depths are of the cloudy part of a layer:
+// times the cover they are those of its water with one radius for droplets and one for crystals, to
+// a fifth (and to a half without the cover). Those radii, 17 and 51 um, are the difference to ours:
+// Martin's droplets over land are 5 to 6 um.
+TEST(RealFiles, UnifiedModelsLayers) {
+  const netcdf::NcFile file(std::string(NEPHO_TEST_REAL_DATA) + "/nc/um_38lev_cosp_input_2d.nc",
+                            {});
+  const auto all = [&](const char* name) { return file.read_all(*file.find(name)); };
+  const std::vector<double> depth = all("dtau_s"), cover = all("tca"), convective = all("cca"),
+                            liquid = all("mr_lsliq"), ice = all("mr_lsice"), half = all("phalf");
+  const ForecastColumns c = open("nc/um_38lev_cosp_input_2d.nc")->columns(0);
+  const std::size_t cells = 17 * 9, nz = 38;
+  struct Layer {
+    double liquid, ice, ours;  // kg/m2; optical depth
+    double in_cloud, mean;     // the file's
+  };
+  std::vector<Layer> layers;
+  for (std::size_t k = 0; k + 1 < nz; ++k)
+    for (std::size_t n = 0; n < cells; ++n) {
+      const std::size_t at = k * cells + n;
+      if (!(depth[at] > 0) || !(cover[at] > 0.01) || convective[at] > 0) continue;
+      const double mass = (half[at] - half[at + cells]) / 9.80665;
+      const float* z = &c.interface_m[n * (nz + 1) + k];
+      layers.push_back({liquid[at] * mass, ice[at] * mass,
+                        double(c.extinction_per_m[n * nz + k]) * (double(z[1]) - double(z[0])),
+                        depth[at], depth[at] * cover[at]});
+    }
+  ASSERT_GT(layers.size(), 500u);
+  // Least squares of depth = a liquid + b ice: what is left of it, and the radii 3 / (2 rho a).
+  struct Fit {
+    double rest, liquid_um, ice_um;
+  };
+  const auto fit = [&](double Layer::*what) {
+    double ll = 0, li = 0, ii = 0, ly = 0, iy = 0, yy = 0, rest = 0;
+    for (const Layer& n : layers) {
+      ll += n.liquid * n.liquid;
+      li += n.liquid * n.ice;
+      ii += n.ice * n.ice;
+      ly += n.liquid * n.*what;
+      iy += n.ice * n.*what;
+      yy += n.*what * n.*what;
+    }
+    const double det = ll * ii - li * li, a = (ly * ii - iy * li) / det,
+                 b = (iy * ll - ly * li) / det;
+    for (const Layer& n : layers) {
+      const double apart = a * n.liquid + b * n.ice - n.*what;
+      rest += apart * apart;
+    }
+    return Fit{std::sqrt(rest / yy), 1.5e3 / a, 1.5e6 / (917 * b)};
+  };
+  const Fit mean = fit(&Layer::mean), in_cloud = fit(&Layer::in_cloud), ours = fit(&Layer::ours);
+  double total = 0, theirs = 0;
+  for (const Layer& n : layers) {
+    total += n.ours;
+    theirs += n.mean;
+  }
+  std::printf(
+      "measured: %zu layers: ours over the file's times cover %.3f; one radius each leaves %.3f of "
+      "it (%.1f and %.1f um), %.3f without the cover, %.3f of ours (%.1f and %.1f um)\n",
+      layers.size(), total / theirs, mean.rest, mean.liquid_um, mean.ice_um, in_cloud.rest,
+      ours.rest, ours.liquid_um, ours.ice_um);
+  EXPECT_LT(mean.rest, 0.25);
+  EXPECT_GT(in_cloud.rest, 0.35);
+  EXPECT_NEAR(mean.liquid_um, 17, 2);
+  // With the radii apart, the same water: what ours and theirs are per radius.
+  EXPECT_GT(mean.liquid_um / ours.liquid_um, 1.3);
+  EXPECT_NEAR(total / theirs, 1.9, 0.3);
+}
+
+// Mie sums of a gamma distribution by another program (ecRad's droplet table, Hogan & Bozzo 2018,
+// doi:10.1029/2018MS001364): extinction of 1 g/m3 at 0.55 um.
+TEST(RealFiles, DropletsAreEcRads) {
+  const netcdf::NcFile file(
+      std::string(NEPHO_TEST_REAL_DATA) + "/optics_truth/mie_droplet_scattering.nc", {});
+  const auto all = [&](const char* name) { return file.read_all(*file.find(name)); };
+  const std::vector<double> radius = all("effective_radius"), wavelength = all("wavelength"),
+                            table = all("mass_extinction_coefficient");
+  std::size_t w = 0;
+  while (w + 1 < wavelength.size() && !(wavelength[w] >= 550e-9 && wavelength[w + 1] < 550e-9)) ++w;
+  ASSERT_LT(w + 1, wavelength.size());
+  const double part = (wavelength[w] - 550e-9) / (wavelength[w] - wavelength[w + 1]);
+  double worst = 0, at_ten = 1;
+  for (std::size_t r = 0; r < radius.size(); ++r) {
+    if (radius[r] < 3.99e-6 || radius[r] > 30.01e-6) continue;
+    const double theirs =
+        (1 - part) * table[r * wavelength.size() + w] + part * table[r * wavelength.size() + w + 1];
+    const double apart = droplet_extinction_m2_per_kg(radius[r]) / theirs - 1;
+    worst = std::max(worst, std::abs(apart));
+    if (std::abs(radius[r] - 10e-6) < 1e-8) at_ten = apart;
+  }
+  report_accuracy("netcdf", "droplet extinction at 10 um against ecRad's Mie table",
+                  std::abs(at_ten), 0.01, "1");
+  report_accuracy("netcdf", "droplet extinction from 4 to 30 um against ecRad's Mie table", worst,
+                  0.02, "1");
+  EXPECT_LT(std::abs(at_ten), 0.01);
+  EXPECT_LT(worst, 0.02);
+}
+
+// Rows of the table of names that are marked as behind a real file are those of these files.
+TEST(RealFiles, MarksOfNamesAreTrue) {
+  std::set<const NameRow*> held;
+  for (const char* name :
+       {"nc/wrf_katrina_10km_nest_4t.nc", "nc/um_38lev_cosp_input_2d.nc",
+        "nc/icon_les_stratocumulus_L150.nc", "nc/gfs_2p5deg_20110110_f120_DERIVED_cf_packed.nc",
+        "edge/psyplot_icon_test.nc"}) {
+    const netcdf::NcFile file(std::string(NEPHO_TEST_REAL_DATA) + "/" + name, {});
+    for (const NameRow& row : name_table())
+      for (const FileVariable& v : file.variables()) {
+        std::string lower = v.name;
+        for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
+        if (*row.name ? lower == row.name : v.text("standard_name") == row.standard_name)
+          held.insert(&row);
+      }
+  }
+  std::size_t marked = 0;
+  for (const NameRow& row : name_table()) {
+    if (row.evidence != Evidence::kReal) continue;
+    ++marked;
+    EXPECT_TRUE(held.contains(&row)) << row.model << ": " << word_of(row.quantity) << " "
+                                     << row.name << row.standard_name << " is marked only";
+  }
+  EXPECT_GT(marked, 20u);
 }
 
 TEST(RealFiles, IconLes) {

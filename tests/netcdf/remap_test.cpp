@@ -7,6 +7,7 @@
 
 #include "accuracy_report.h"
 #include "made_source.h"
+#include "forecast/grids/cell_size.h"
 #include "remapped.h"
 
 namespace nepho::test {

@@ -13,6 +13,7 @@
 #include "forecast/bricks/layout.h"
 #include "geo/place.h"
 #include "pyramid/level_filter.h"
+#include "synthetic_forecast.h"
 
 namespace nepho::test {
 
@@ -129,7 +130,8 @@ inline double cell_volume_m3(const HorizontalGrid& grid, int i, int j, double lo
 }
 
 // sum beta V over the model's cells, the extension below the ground included.
-inline double file_total(const Remapped& r, bool ice = false) {
+template <class Cells>
+double file_total(const Cells& r, bool ice = false) {
   const auto& c = r.columns;
   const std::vector<float>& beta = ice ? c.ice_extinction_per_m : c.extinction_per_m;
   double sum = 0;

@@ -105,6 +105,113 @@ TEST(Vertical, HybridInterfacesStandAtTheirPressures) {
   EXPECT_LE(to_10_m, 10);
 }
 
+// FV3's history files: layers from the top down, ak and bk as global attributes, an axis of
+// reference pressures, thickness in m (below 0) and Pa, over ground of 700 m.
+struct Fv3Twin {
+  static constexpr std::size_t kLayers = 64;
+  bool coefficients = true, metres = false, pascals = false;
+  double ground_m = 700;
+  static double a(std::size_t k) {
+    const double s = double(k) / kLayers;
+    return 101325 * std::exp(-9 * std::pow(1 - s, 1.3)) - 101325 * b(k);
+  }
+  static double b(std::size_t k) { return std::pow(double(k) / kLayers, 3); }
+  double surface_Pa() const { return pressure_Pa(ground_m); }
+  static double pressure_Pa(double height_m) {  // of standard()
+    double low = 1e3, high = 1.2e5;
+    for (int n = 0; n < 80; ++n) {
+      const double p = std::sqrt(low * high);
+      (standard(p).height_m > height_m ? low : high) = p;
+    }
+    return low;
+  }
+  double interface_Pa(std::size_t k) const { return a(k) + b(k) * surface_Pa(); }
+  double interface_m(std::size_t k) const { return standard(interface_Pa(k)).height_m; }
+
+  std::string write() const {
+    const std::string path = folder() / "fv3.nc";
+    NcWriter nc(path);
+    nc.dimension("pfull", kLayers);
+    nc.dimension("lat", 3);
+    nc.dimension("lon", 4);
+    std::vector<double> ak, bk, reference, t, metre, pascal, water;
+    for (std::size_t k = 0; k <= kLayers; ++k) {
+      ak.push_back(a(k));
+      bk.push_back(b(k));
+    }
+    if (coefficients) {
+      nc.global("ak", ak);
+      nc.global("bk", bk);
+    }
+    for (std::size_t k = 0; k < kLayers; ++k) {
+      reference.push_back((a(k) + a(k + 1) + (b(k) + b(k + 1)) * 1e5) / 200);
+      const double thick = interface_m(k) - interface_m(k + 1);
+      for (int n = 0; n < 12; ++n) {
+        t.push_back(standard((interface_Pa(k) + interface_Pa(k + 1)) / 2).temperature_K);
+        metre.push_back(-thick);
+        pascal.push_back(interface_Pa(k + 1) - interface_Pa(k));
+        water.push_back(k == 40 ? 1e-4 : 0);
+      }
+    }
+    nc.variable("pfull", NC_DOUBLE, {"pfull"}, reference, {{"units", std::string("mb")}});
+    nc.variable("lat", NC_DOUBLE, {"lat"}, {10, 11, 12}, {{"units", std::string("degrees_north")}});
+    nc.variable("lon", NC_DOUBLE, {"lon"}, {1, 2, 3, 4}, {{"units", std::string("degrees_east")}});
+    const std::vector<std::string> field = {"pfull", "lat", "lon"};
+    nc.variable("tmp", NC_DOUBLE, field, t, {{"units", std::string("K")}});
+    nc.variable("clwmr", NC_DOUBLE, field, water, {{"units", std::string("kg/kg")}});
+    nc.variable("icmr", NC_DOUBLE, field, std::vector<double>(water.size(), 0.0),
+                {{"units", std::string("kg/kg")}});
+    if (metres) nc.variable("delz", NC_DOUBLE, field, metre, {{"units", std::string("m")}});
+    if (pascals) nc.variable("dpres", NC_DOUBLE, field, pascal, {{"units", std::string("Pa")}});
+    const auto surface = [&](const char* name, double value, const char* unit) {
+      nc.variable(name, NC_DOUBLE, {"lat", "lon"}, std::vector<double>(12, value),
+                  {{"units", std::string(unit)}});
+    };
+    surface("hgtsfc", ground_m, "m");
+    surface("pressfc", surface_Pa(), "Pa");
+    return path;
+  }
+  // Farthest interface from its height, up to 500 hPa.
+  double off_m() const {
+    const ForecastColumns c = open(write())->columns(0);
+    double worst = 0;
+    for (std::size_t k = 0; k <= kLayers; ++k)
+      if (interface_Pa(kLayers - k) >= 500e2)
+        worst = std::max(worst, std::abs(double(c.interface_m[k]) - interface_m(kLayers - k)));
+    // The cloud is in its own layer.
+    for (std::size_t k = 0; k < kLayers; ++k)
+      EXPECT_EQ(c.extinction_per_m[k] > 0, k == kLayers - 1 - 40) << k;
+    return worst;
+  }
+};
+
+TEST(Vertical, Fv3LayersStandAtTheirHeights) {
+  Fv3Twin twin;
+  const double hybrid_m = twin.off_m();
+  twin.metres = true;
+  const double metres_m = twin.off_m();
+  twin.coefficients = false;
+  const double alone_m = twin.off_m();
+  twin.metres = false;
+  twin.pascals = true;
+  const double pascals_m = twin.off_m();
+  report_accuracy("grids", "FV3's ak and bk to 500 hPa: off the standard atmosphere", hybrid_m, 1,
+                  "m");
+  report_accuracy("grids", "FV3's delz to 500 hPa: off the standard atmosphere",
+                  std::max(metres_m, alone_m), 0.01, "m");
+  report_accuracy("grids", "FV3's dpres to 500 hPa: off the standard atmosphere", pascals_m, 1,
+                  "m");
+  EXPECT_LE(hybrid_m, 1);
+  EXPECT_LE(std::max(metres_m, alone_m), 0.01);
+  EXPECT_LE(pascals_m, 1);
+  // Reference pressures alone are said to be what they are.
+  twin.pascals = false;
+  const auto said = open(twin.write())->assumptions();
+  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& text) {
+    return text.find("pfull holds reference pressures") != std::string::npos;
+  }));
+}
+
 // The 37 levels that analyses are given on, with bounds half way in pressure.
 TEST(Vertical, PressureLevelsStandAtTheirHeights) {
   const std::vector<double> hPa = {1000, 975, 950, 925, 900, 875, 850, 825, 800, 775, 750, 700, 650,

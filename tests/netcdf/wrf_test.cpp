@@ -4,6 +4,7 @@
 
 #include "accuracy_report.h"
 #include "forecast/water/air.h"
+#include "forecast/water/water.h"
 #include "sources/netcdf/open_netcdf.h"
 #include "wrf_twin.h"
 
@@ -128,6 +129,43 @@ TEST(Wrf, WaterIsTheFormulas) {
   }
   EXPECT_NE(facts_of(*f).find("119 negative water values"), std::string::npos) << facts_of(*f);
   EXPECT_NEAR(f->liquid_radius_m(), 7.6e-6, 1.5e-6);
+}
+
+// Rain, snow and graupel, numbers of droplets, and radii, which come before numbers.
+TEST(Wrf, SizesAndKindsAreTheFiles) {
+  WrfTwin twin;
+  twin.with_kinds = twin.with_number = true;
+  const auto at = [&](const ForecastColumns& c, int i, int j, int k) {
+    return double(c.extinction_per_m[std::size_t((j * twin.nx + i) * twin.nz + k)]);
+  };
+  const auto density = [](int k) {  // of dry air
+    const double p = 95100 - 5000 * k, q = 0.008 / 1.008;
+    const double t = (295.0 + k) * std::pow(p / 1e5, 2.0 / 7);
+    return p / (287.058 * t * (1 + 0.608 * q)) * (1 - q);
+  };
+  const double temperature_K = 296 * std::pow(0.901, 2.0 / 7), content = 5e-4 * density(1);
+  const auto by_number = open(twin.write("numbers"));
+  const ForecastColumns c = by_number->columns(0);
+  const double number = 2e8 * density(1) * 1.008;
+  EXPECT_NEAR(at(c, 2, 1, 1) / (content * droplet_extinction_m2_per_kg(
+                                              droplet_radius_m(content, {number, 0.69}))),
+              1, 2e-3);
+  const double fall = 1e-4 * density(1);
+  for (const auto& [cell, species] :
+       {std::pair{1, Species::kRain}, {2, Species::kSnow}, {3, Species::kGraupel}})
+    EXPECT_NEAR(at(c, cell, 2, 1) /
+                    (fall * precipitation_extinction_m2_per_kg(species, fall, temperature_K)),
+                1, 2e-3)
+        << cell;
+  twin.with_radii = true;
+  const auto by_radius = open(twin.write("radii"));
+  const ForecastColumns r = by_radius->columns(0);
+  EXPECT_NEAR(at(r, 2, 1, 1) / (content * droplet_extinction_m2_per_kg(12e-6)), 1, 2e-3);
+  EXPECT_NEAR(at(r, 4, 3, 3) / (1e-5 * density(3) * ice_extinction_m2_per_kg(55e-6)), 1, 2e-3);
+  const auto said = by_radius->assumptions();
+  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& text) {
+    return text.find("Droplet radii are the file's, RE_CLOUD.") != std::string::npos;
+  }));
 }
 
 TEST(Wrf, OneCondensateFreezes) {

@@ -11,12 +11,15 @@
 
 namespace nepho::forecast::test {
 
-// A WRF file on its Mercator map (true latitude 0, sphere of 6370 km), with a nest that moves by a
-// cell a time.
+// A WRF file on its Mercator map (true latitude 0, sphere of 6370 km), with a nest that moves by
+// some cells a time.
 struct WrfTwin {
   int nx = 6, ny = 5, nz = 4, nt = 2;
-  double dx_m = 10000;
+  double dx_m = 10000, west_m = 0, south_m = 2500000;  // of the first centre, from 90 W 0 N
+  int moves = 1, first_h = 12, step_h = 3;
+  bool flat = false;
   bool with_xlat = true, with_ice = true;
+  bool with_kinds = false, with_number = false, with_radii = false;  // all water; its sizes
   int scheme = 8;
   double shift_deg = 0;  // of XLONG against the map
   double cloud = 5e-4;   // QCLOUD of cell (2, 1), layer 1, time 0; twice that at time 1
@@ -24,11 +27,11 @@ struct WrfTwin {
 
   static constexpr double kRadius_m = 6370000, kDegree = 0.017453292519943295;
   double latitude(int t, double j) const {  // j in centres
-    const double y = (j + t) * dx_m + 2500000;
+    const double y = (j + t * moves) * dx_m + south_m;
     return (2 * std::atan(std::exp(y / kRadius_m)) - M_PI / 2) / kDegree;
   }
-  double longitude(double i) const { return -90 + i * dx_m / kRadius_m / kDegree; }
-  double terrain_m(int i, int j) const { return 100.0 * i + 10 * j; }
+  double longitude(double i) const { return -90 + (i * dx_m + west_m) / kRadius_m / kDegree; }
+  double terrain_m(int i, int j) const { return flat ? 0 : 100.0 * i + 10 * j; }
   // Geopotential of interface k, base and perturbation in one.
   double phi(int k, int i, int j) const {
     return 9.81 * (terrain_m(i, j) + 300.0 * k + 50.0 * k * k);
@@ -57,7 +60,8 @@ struct WrfTwin {
                                        {"CEN_LON", longitude(0.5 * (nx - 1))}})
       nc.global(key, value);
     std::string times;
-    for (int t = 0; t < nt; ++t) times += "2005-08-28_1" + std::to_string(2 + 3 * t) + ":00:00";
+    for (int t = 0; t < nt; ++t)
+      times += "2005-08-28_" + std::to_string(first_h + step_h * t) + ":00:00";
     nc.text("Times", {"Time", "DateStrLen"}, times);
     const auto put = [&](const char* variable, int levels, const char* units, auto value) {
       std::vector<double> values;
@@ -90,6 +94,20 @@ struct WrfTwin {
     if (with_ice)
       put("QICE", nz, "kg kg-1",
           [&](int, int k, int j, int i) { return k == 3 && j == 3 && i == 4 ? 1e-5 : 0; });
+    const auto in = [](int cell) {
+      return [cell](int, int k, int j, int i) { return k == 1 && j == 2 && i == cell ? 1e-4 : 0; };
+    };
+    const auto same = [](double value) { return [value](int, int, int, int) { return value; }; };
+    if (with_kinds) {
+      put("QRAIN", nz, "kg kg-1", in(1));
+      put("QSNOW", nz, "kg kg-1", in(2));
+      put("QGRAUP", nz, "kg kg-1", in(3));
+    }
+    if (with_number) put("QNCLOUD", nz, "  kg(-1)", same(2e8));
+    if (with_radii) {
+      put("RE_CLOUD", nz, "m", same(12e-6));
+      put("RE_ICE", nz, "m", same(55e-6));
+    }
     return path;
   }
 };

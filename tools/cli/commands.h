@@ -10,7 +10,8 @@ namespace nepho {
 struct RenderOptions {
   std::vector<std::string> inputs;  // a scene, a picture with a scene in it, or data files
   std::string output;  // "": the input's name in this folder, .png (or .ppm); NAME-again for NAME
-  std::optional<std::string> size, look_from, look_at, fov_deg, sun, up, metres_per_unit, grid;
+  std::optional<std::string> size, look_from, look_at, fov_deg, sun, up, metres_per_unit, grid,
+      names;
   std::optional<std::string> target_error, target_ms;
   std::optional<std::string> budget_mib, step_voxels, tolerance, fetch, light, pixels, seed,
       probe_pixels;
@@ -23,7 +24,7 @@ struct RenderOptions {
 
 struct InfoOptions {
   std::string input;
-  std::optional<std::string> grid, up, metres_per_unit, density_scale, frame, time, region;
+  std::optional<std::string> grid, names, up, metres_per_unit, density_scale, frame, time, region;
   bool json = false, check = false, force = false;
 };
 

@@ -221,6 +221,7 @@ Scene scene_of(const InfoOptions& options, const PictureFiles& pictures) {
   Scene scene;
   scene.volumes.push_back(data_volume(options.input));
   set_parameter(scene, "grid", "--grid", options.grid);
+  set_parameter(scene, "names", "--names", options.names);
   set_parameter(scene, "up", "--up", options.up);
   set_parameter(scene, "metres_per_unit", "--metres-per-unit", options.metres_per_unit);
   set_parameter(scene, "density_scale", "--density-scale", options.density_scale);

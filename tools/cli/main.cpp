@@ -32,6 +32,7 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope view                                        a window: fly over the procedural planet
   nephoscope view wrfout_d01.nc                          through a forecast; drop files to open them
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
+  nephoscope render les.nc --names ourmodel.names -o les.png   what its variables are (docs/names.md)
   nephoscope info wrfout_d01.nc --check                  and how well the bricks hold it
   nephoscope compare a.exr b.exr                         how far two pictures are apart
   nephoscope compare a.exr b.exr --diff apart.png        and where (FLIP)
@@ -55,11 +56,15 @@ void start_logging() {
 
 using Text = std::optional<std::string>;
 
-void add_data_options(CLI::App& command, Text& grid, Text& up, Text& metres_per_unit,
+void add_data_options(CLI::App& command, Text& grid, Text& names, Text& up, Text& metres_per_unit,
                       Text& density_scale, Text& frame) {
   command
       .add_option("--grid", grid,
                   "name of the grid to draw (VDB); file with the cells' places (NetCDF)")
+      ->group("Data");
+  command
+      .add_option("--names", names,
+                  "file with the names of a model that is not known (NetCDF, GRIB; docs/names.md)")
       ->group("Data");
   command.add_option("--up", up, "up axis of the file: y or z (VDB)")->group("Data");
   command.add_option("--metres-per-unit", metres_per_unit, "size of one world unit of the file")
@@ -228,8 +233,8 @@ int run(int argc, char** argv) {
   add_quality_options(*draw, render);
   add_reference_options(*draw, render);
   add_camera_options(*draw, render);
-  add_data_options(*draw, render.grid, render.up, render.metres_per_unit, render.density_scale,
-                   render.frame);
+  add_data_options(*draw, render.grid, render.names, render.up, render.metres_per_unit,
+                   render.density_scale, render.frame);
   add_drawn_data_options(*draw, render);
   draw->add_flag("--explain-macros", render.explain_macros, "")->group("");
   draw->footer(kExamples);
@@ -242,8 +247,8 @@ int run(int argc, char** argv) {
   add_view_options(*fly, view);
   add_quality_options(*fly, view.render);
   add_camera_options(*fly, view.render);
-  add_data_options(*fly, view.render.grid, view.render.up, view.render.metres_per_unit,
-                   view.render.density_scale, view.render.frame);
+  add_data_options(*fly, view.render.grid, view.render.names, view.render.up,
+                   view.render.metres_per_unit, view.render.density_scale, view.render.frame);
   add_drawn_data_options(*fly, view.render);
   fly->footer(kExamples);
   fly->callback([&] { view_command(view); });
@@ -257,7 +262,8 @@ int run(int argc, char** argv) {
   tell->add_flag("--force", info.force, "take values that no cloud has (NetCDF, GRIB)")
       ->group("Data");
   tell->add_option("--region", info.region, kRegion)->group("Data");
-  add_data_options(*tell, info.grid, info.up, info.metres_per_unit, info.density_scale, info.frame);
+  add_data_options(*tell, info.grid, info.names, info.up, info.metres_per_unit, info.density_scale,
+                   info.frame);
   tell->callback([&] { info_command(info); });
 
   CompareOptions compare;

@@ -160,6 +160,32 @@ void apply_light(Scene& scene, const RenderOptions& o) {
   if (o.dither) scene.dither = true;
 }
 
+// Files of forecasts are times and domains of one: `grib` and `netcdf` together are a `forecast`.
+std::vector<VolumeSpec> one_forecast(std::vector<VolumeSpec> data) {
+  const auto is_forecast = [](const VolumeSpec& volume) {
+    return volume.source == "netcdf" || volume.source == "grib";
+  };
+  const auto first = std::ranges::find_if(data, is_forecast);  // `data` does not grow: it stays
+  if (first == data.end()) return data;
+  for (auto other = first + 1; other != data.end();) {
+    if (!is_forecast(*other)) {
+      ++other;
+      continue;
+    }
+    if (other->source != first->source) first->source = "forecast";
+    first->files.insert(first->files.end(), other->files.begin(), other->files.end());
+    other = data.erase(other);
+  }
+  return data;
+}
+
+// A grid file of another format than the data's needs the module that reads both.
+void read_grid_with_data(Scene& scene, const std::string& grid) {
+  const bool is_grib = first_bytes(grid).starts_with("GRIB");
+  for (VolumeSpec& volume : scene.volumes)
+    if (volume.source == (is_grib ? "netcdf" : "grib")) volume.source = "forecast";
+}
+
 // For every volume with files, in place of what it has of this name.
 void lay_over(Scene& scene, const SourceParameter& parameter) {
   bool used = false;
@@ -309,8 +335,8 @@ VolumeSpec data_volume(const std::string& file) {
     throw Error({"a raster is no cloud field", file, "NetCDF, GRIB or VDB", "TIFF", ""});
   const std::string ending = ending_of(file);
   if (ending.empty())
-    throw Error({"unknown kind of file", file, "NetCDF or GRIB, or a name with an ending, such as .vdb",
-                 "none", ""});
+    throw Error({"unknown kind of file", file,
+                 "NetCDF or GRIB, or a name with an ending, such as .vdb", "none", ""});
   volume.source = ending.substr(1);
   return volume;
 }
@@ -344,6 +370,7 @@ void set_region(Scene& scene, const std::optional<std::string>& value) {
 void set_parameter(Scene& scene, const char* parameter, const std::string& option,
                    const std::optional<std::string>& value) {
   if (value) lay_over(scene, make_parameter(parameter, *value, option));
+  if (value && option == "--grid") read_grid_with_data(scene, *value);
 }
 
 Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
@@ -360,8 +387,10 @@ Scene scene_from(const RenderOptions& o, const PictureFiles& pictures) {
     scene_read = true;
     scene = kind == InputKind::kScene ? read_scene_file(input) : scene_in_picture(input, pictures);
   }
+  data = one_forecast(std::move(data));
   scene.volumes.insert(scene.volumes.end(), data.begin(), data.end());
   set_parameter(scene, "grid", "--grid", o.grid);
+  set_parameter(scene, "names", "--names", o.names);
   set_parameter(scene, "up", "--up", o.up);
   set_parameter(scene, "metres_per_unit", "--metres-per-unit", o.metres_per_unit);
   set_parameter(scene, "density_scale", "--density-scale", o.density_scale);

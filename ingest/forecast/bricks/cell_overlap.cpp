@@ -32,6 +32,7 @@ double density(double tan_u, double tan_v, double step_rad) {
 struct TrianglePoint {
   double a, b, c, weight;
 };
+constexpr double kNothing = 1e-9;  // of a square
 constexpr double kA = 0.445948490915965, kB = 0.091576213509771;
 constexpr double kWa = 0.223381589678011, kWb = 0.109951743655322;
 constexpr std::array<TrianglePoint, 6> kTriangle = {{{1 - 2 * kA, kA, kA, kWa},
@@ -43,37 +44,27 @@ constexpr std::array<TrianglePoint, 6> kTriangle = {{{1 - 2 * kA, kA, kA, kWa},
 
 }  // namespace
 
-// Convex, or nearly: a quadrilateral cut by four lines has at most 8 corners.
-struct CellOverlap::Polygon {
-  std::array<glm::dvec2, 12> point;
-  int size = 0;
+// One square of the lattice: what falls into it is added up at its four corners.
+struct CellOverlap::Square {
+  glm::dvec2 origin;
+  double density[4];
+  double sum[4] = {};
 
-  void push_back(glm::dvec2 p) {
-    if (size < int(point.size())) point[std::size_t(size++)] = p;
-  }
-  double area() const {  // signed, twice
-    double sum = 0;
-    for (int at = 2; at < size; ++at) {
-      const glm::dvec2 u = point[std::size_t(at - 1)] - point[0],
-                       v = point[std::size_t(at)] - point[0];
-      sum += u.x * v.y - u.y * v.x;
-    }
-    return sum;
-  }
-  // The part with point[axis] * side >= limit * side (Sutherland and Hodgman 1974).
-  Polygon clipped(int axis, double limit, double side) const {
-    Polygon part;
-    for (int at = 0; at < size; ++at) {
-      const glm::dvec2 &p = point[std::size_t(at)], &q = point[std::size_t((at + 1) % size)];
-      const double dp = (p[axis] - limit) * side, dq = (q[axis] - limit) * side;
-      if (dp >= 0) part.push_back(p);
-      if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) {
-        glm::dvec2 cut = p + (q - p) * (dp / (dp - dq));
-        cut[axis] = limit;
-        part.push_back(cut);
+  // Counterclockwise, or clockwise to take away.
+  void add(const FacePolygon& piece, double sign) {
+    for (int at = 2; at < piece.size; ++at) {
+      const glm::dvec2 p0 = piece.corner(0) - origin, p1 = piece.corner(at - 1) - origin,
+                       p2 = piece.corner(at) - origin;
+      const glm::dvec2 e = p1 - p0, f = p2 - p0;
+      const double area = 0.5 * sign * (e.x * f.y - e.y * f.x);
+      for (const TrianglePoint& t : kTriangle) {
+        const glm::dvec2 p = t.a * p0 + t.b * p1 + t.c * p2;
+        const double hat[4] = {(1 - p.x) * (1 - p.y), p.x * (1 - p.y), (1 - p.x) * p.y, p.x * p.y};
+        const double here =
+            hat[0] * density[0] + hat[1] * density[1] + hat[2] * density[2] + hat[3] * density[3];
+        for (int c = 0; c < 4; ++c) sum[c] += t.weight * area * here * hat[c];
       }
     }
-    return part;
   }
 };
 
@@ -87,8 +78,9 @@ glm::dvec3 scaled_direction(const Ellipsoid& body, glm::dvec2 lat_lon_deg, doubl
   return glm::normalize(glm::dvec3(p.x, p.y, p.z * (body.equatorial_m / body.polar_m)));
 }
 
-void CellOverlap::add(const std::array<glm::dvec3, 4>& corners,
-                      std::vector<HatShare>& shares) const {
+void for_each_face(const ShellChart& chart, const Index3& cells,
+                   const std::array<glm::dvec3, 4>& corners,
+                   const std::function<void(int root, const FacePolygon& polygon)>& use) {
   std::array<int, 4> faces;
   std::ranges::transform(corners, faces.begin(), nearest_face);
   const bool one_face = std::ranges::all_of(faces, [&](int face) { return face == faces[0]; });
@@ -96,60 +88,63 @@ void CellOverlap::add(const std::array<glm::dvec3, 4>& corners,
     if (one_face && root != faces[0]) continue;
     // A quadrilateral that leaves a face is followed to 73 degrees from its middle.
     if (std::ranges::any_of(corners,
-                            [&](const auto& p) { return normal_component(root, p) < 0.3; }))
+                            [&](const auto& p) { return !(normal_component(root, p) >= 0.3); }))
       continue;
-    Polygon quad;
+    FacePolygon quad;
     for (const glm::dvec3& corner : corners) {
-      const glm::dvec3 surface_m = {
-          corner.x, corner.y, corner.z * (chart_.body().polar_m / chart_.body().equatorial_m)};
-      quad.push_back(glm::dvec2(chart_.coordinates(root, surface_m)) * double(cells_[0]));
+      const glm::dvec3 surface_m = {corner.x, corner.y,
+                                    corner.z * (chart.body().polar_m / chart.body().equatorial_m)};
+      quad.push_back(glm::dvec2(chart.coordinates(root, surface_m)) * double(cells[0]));
     }
-    add_on_face(root, quad, shares);
+    use(root, quad);
   }
 }
 
-void CellOverlap::add_on_face(int root, const Polygon& quad, std::vector<HatShare>& shares) const {
+void CellOverlap::add(const std::array<glm::dvec3, 4>& corners,
+                      std::vector<HatShare>& shares) const {
+  for_each_face(chart_, cells_, corners,
+                [&](int root, const FacePolygon& quad) { add_on_face(root, quad, shares); });
+}
+
+void CellOverlap::add_on_face(int root, const FacePolygon& given,
+                              std::vector<HatShare>& shares) const {
+  FacePolygon quad = given;
   const double area = quad.area();
   if (area == 0) return;
-  glm::dvec2 low = quad.point[0], high = low;
+  if (area < 0) std::reverse(quad.point.begin(), quad.point.begin() + quad.size);
+  glm::dvec2 low = quad.corner(0), high = low;
   for (int at = 1; at < quad.size; ++at) {
-    low = glm::min(low, quad.point[std::size_t(at)]);
-    high = glm::max(high, quad.point[std::size_t(at)]);
+    low = glm::min(low, quad.corner(at));
+    high = glm::max(high, quad.corner(at));
   }
   const double n = cells_[0];
   low = glm::max(low, 0.0);
   high = glm::min(high, n);
   for (double i = std::floor(low.x); i < high.x; ++i) {
-    const Polygon strip = quad.clipped(0, i, +1).clipped(0, i + 1, -1);
+    const FacePolygon strip = quad.clipped(0, i, +1).clipped(0, i + 1, -1);
     if (strip.size < 3) continue;
     for (double j = std::floor(low.y); j < high.y; ++j) {
-      const Polygon piece = strip.clipped(1, j, +1).clipped(1, j + 1, -1);
-      if (piece.size >= 3)
-        add_square(root, std::uint32_t(i), std::uint32_t(j), piece, area > 0 ? 1 : -1, shares);
+      const FacePolygon piece = strip.clipped(1, j, +1).clipped(1, j + 1, -1);
+      if (piece.size >= 3) add_square(root, std::uint32_t(i), std::uint32_t(j), piece, shares);
     }
   }
 }
 
-void CellOverlap::add_square(int root, std::uint32_t i, std::uint32_t j, const Polygon& piece,
-                             double sign, std::vector<HatShare>& shares) const {
+void CellOverlap::add_square(int root, std::uint32_t i, std::uint32_t j, const FacePolygon& piece,
+                             std::vector<HatShare>& shares) const {
   const double n = cells_[0], step_rad = pi / 2 / n;
   const double u[2] = {equiangular(2 * (i / n) - 1), equiangular(2 * ((i + 1) / n) - 1)};
   const double v[2] = {equiangular(2 * (j / n) - 1), equiangular(2 * ((j + 1) / n) - 1)};
-  double corner[4], sum[4] = {};
-  for (int c = 0; c < 4; ++c) corner[c] = density(u[c & 1], v[c >> 1], step_rad);
-  const glm::dvec2 origin = {double(i), double(j)};
-  for (int at = 2; at < piece.size; ++at) {
-    const glm::dvec2 p0 = piece.point[0] - origin, p1 = piece.point[std::size_t(at - 1)] - origin,
-                     p2 = piece.point[std::size_t(at)] - origin;
-    const glm::dvec2 e = p1 - p0, f = p2 - p0;
-    const double area = 0.5 * sign * (e.x * f.y - e.y * f.x);
-    for (const TrianglePoint& t : kTriangle) {
-      const glm::dvec2 p = t.a * p0 + t.b * p1 + t.c * p2;
-      const double hat[4] = {(1 - p.x) * (1 - p.y), p.x * (1 - p.y), (1 - p.x) * p.y, p.x * p.y};
-      const double here =
-          hat[0] * corner[0] + hat[1] * corner[1] + hat[2] * corner[2] + hat[3] * corner[3];
-      for (int c = 0; c < 4; ++c) sum[c] += t.weight * area * here * hat[c];
-    }
+  Square square{{double(i), double(j)}, {}};
+  for (int c = 0; c < 4; ++c) square.density[c] = density(u[c & 1], v[c >> 1], step_rad);
+  if (finer_ && !finer_->empty()) {
+    finer_->for_each_left(root, i, j, piece,
+                          [&](const FacePolygon& part, double sign) { square.add(part, sign); });
+    // What is wholly covered leaves differences of equal numbers.
+    for (int c = 0; c < 4; ++c)
+      if (square.sum[c] < kNothing * square.density[c]) square.sum[c] = 0;
+  } else {
+    square.add(piece, 1);
   }
   for (std::uint32_t c = 0; c < 4; ++c) {
     Column column = {root, i + (c & 1), j + (c >> 1)};
@@ -159,9 +154,9 @@ void CellOverlap::add_square(int root, std::uint32_t i, std::uint32_t j, const P
 #endif
     const auto known = std::ranges::find(shares, column, &HatShare::column);
     if (known != shares.end())
-      known->solid_angle_sr += sum[c];
+      known->solid_angle_sr += square.sum[c];
     else
-      shares.push_back({column, sum[c]});
+      shares.push_back({column, square.sum[c]});
   }
 }
 

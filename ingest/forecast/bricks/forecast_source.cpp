@@ -33,6 +33,42 @@ std::string text(const char* format, double a, double b = 0) {
 
 using Boxes = std::function<std::shared_ptr<const BoxAround>(const HatRemap&)>;
 
+// The cells of one domain at one of its times.
+struct DomainState {
+  GridSearch search;
+  ForecastColumns columns;
+
+  // Of the cell that holds a place: nothing where none does, or one without data.
+  std::optional<double> extinction_per_m(const GeodeticPoint& point, double extend_below_m) const {
+    const auto [at, off_cells] = search.find({point.latitude_deg, point.longitude_deg});
+    if (off_cells > 0) return {};
+    const auto index = [](double x, int n) { return std::size_t(std::min(int(x), n - 1)); };
+    const std::size_t nz = std::size_t(columns.nz);
+    const std::size_t cell =
+        index(at.y, columns.ny) * std::size_t(columns.nx) + index(at.x, columns.nx);
+    if (!columns.without_data.empty() && columns.without_data[cell]) return {};
+    const float* interface_m = &columns.interface_m[cell * (nz + 1)];
+    if (point.height_m < double(interface_m[0]) - extend_below_m) return 0;
+    const float* above =
+        std::upper_bound(interface_m + 1, interface_m + nz + 1, float(point.height_m));
+    if (above == interface_m + nz + 1) return 0;
+    return double(columns.extinction_per_m[cell * nz + std::size_t(above - interface_m - 1)]);
+  }
+};
+
+std::vector<DomainState> states_of(const Forecast& forecast, std::size_t time) {
+  std::vector<DomainState> states;
+  for (const DomainTime& d : forecast.domains(time))
+    states.push_back({GridSearch(d.domain->grid(d.time)), d.domain->columns(d.time)});
+  return states;
+}
+
+std::vector<HatDomain> hat_domains(const std::vector<DomainState>& states) {
+  std::vector<HatDomain> domains;
+  for (const DomainState& state : states) domains.push_back({state.search.grid(), state.columns});
+  return domains;
+}
+
 // One time of a forecast: its hats, their coarse levels, and the model's own cells.
 class Moment {
  public:
@@ -40,40 +76,35 @@ class Moment {
   Moment(const Forecast& forecast, std::size_t time, const Layout& layout, RemapOptions options,
          const Boxes& boxes)
       : options_(options),
-        search_(forecast.grid(time)),
-        columns_(forecast.columns(time)),
-        remap_(layout.chart, layout.lattice, search_.grid(), columns_, options),
+        domains_(states_of(forecast, time)),
+        remap_(layout.chart, layout.lattice, hat_domains(domains_), options),
         box_(boxes(remap_)),
         total_(pyramid(layout, HatRemap::Part::kTotal)) {
-    columns_.ice_extinction_per_m = std::vector<float>();
+    for (DomainState& domain : domains_) domain.columns.ice_extinction_per_m = std::vector<float>();
     if (remap_.has_ice()) ice_.emplace(pyramid(layout, HatRemap::Part::kIce));
   }
 
   const SparsePyramid& total() const { return total_; }
   const SparsePyramid* ice() const { return ice_ ? &*ice_ : nullptr; }
-  const ForecastColumns& columns() const { return columns_; }
+  const std::vector<DomainState>& domains() const { return domains_; }
 
-  // The model's own cells; of cubes, what they sample.
+  // The model's own cells, of the finest domain that has any there; of cubes, what they sample.
   double point_extinction_per_m(const Ellipsoid& body, const glm::dvec3& ecef_m) const {
     if (box_) return remap_.interpolated(ecef_m, HatRemap::Part::kTotal);
     const GeodeticPoint point = geodetic_point(body, ecef_m);
-    const auto [at, off_cells] = search_.find({point.latitude_deg, point.longitude_deg});
-    if (off_cells > 0) return 0;
-    const auto index = [](double x, int n) { return std::size_t(std::min(int(x), n - 1)); };
-    const std::size_t nz = std::size_t(columns_.nz);
-    const std::size_t cell =
-        index(at.y, columns_.ny) * std::size_t(columns_.nx) + index(at.x, columns_.nx);
-    const float* interface_m = &columns_.interface_m[cell * (nz + 1)];
-    if (point.height_m < double(interface_m[0]) - options_.extend_below_m) return 0;
-    const float* above =
-        std::upper_bound(interface_m + 1, interface_m + nz + 1, float(point.height_m));
-    if (above == interface_m + nz + 1) return 0;
-    return double(columns_.extinction_per_m[cell * nz + std::size_t(above - interface_m - 1)]);
+    for (const DomainState& domain : domains_)
+      if (const auto value = domain.extinction_per_m(point, options_.extend_below_m)) return *value;
+    return 0;
   }
 
   std::uint64_t bytes() const {
-    return sizeof *this + remap_.bytes() + total_.bytes() + (ice_ ? ice_->bytes() : 0) +
-           (columns_.interface_m.capacity() + columns_.extinction_per_m.capacity()) * sizeof(float);
+    std::uint64_t bytes =
+        sizeof *this + remap_.bytes() + total_.bytes() + (ice_ ? ice_->bytes() : 0);
+    for (const DomainState& domain : domains_)
+      bytes +=
+          (domain.columns.interface_m.capacity() + domain.columns.extinction_per_m.capacity()) *
+          sizeof(float);
+    return bytes;
   }
 
  private:
@@ -95,8 +126,7 @@ class Moment {
   }
 
   RemapOptions options_;
-  GridSearch search_;
-  ForecastColumns columns_;
+  std::vector<DomainState> domains_;  // finest first
   HatRemap remap_;
   std::shared_ptr<const BoxAround> box_;
   SparsePyramid total_;
@@ -248,23 +278,31 @@ std::optional<std::string> reading_fact(const Forecast& forecast) {
   return text("Read: %.3g MB; all values of the data are %.3g MB.", read / 1e6, held / 1e6);
 }
 
-void NetcdfSource::state_facts(const Moment& first) {
-  if (const auto reading = reading_fact(*forecast_)) info_.facts.push_back(*reading);
-  info_.facts.push_back(text("Finest voxels are %.4g km wide (at most) and %.4g m high.",
-                             layout_.voxel_width_m / 1000, layout_.voxel_height_m));
-  const glm::dvec2 range_m = forecast_->height_range_m();
-  info_.facts.push_back(
-      text("The data reach from %.0f m to %.1f km.", range_m.x, range_m.y / 1000));
-  // Cloud in the topmost layer is cut, whatever the model had above it.
-  const ForecastColumns& columns = first.columns();
+void count_cut(const ForecastColumns& columns, std::size_t& cut, std::size_t& cloudy) {
   const std::size_t nz = std::size_t(columns.nz);
-  std::size_t cut = 0, cloudy = 0;
   for (std::size_t top = nz; top <= columns.extinction_per_m.size(); top += nz) {
     const auto begin = columns.extinction_per_m.begin() + std::ptrdiff_t(top);
     const auto is_cloud = [](float value) { return value > 1e-5f; };
     cut += is_cloud(begin[-1]);
     cloudy += std::any_of(begin - std::ptrdiff_t(nz), begin, is_cloud);
   }
+}
+
+void NetcdfSource::state_facts(const Moment& first) {
+  if (const auto reading = reading_fact(*forecast_)) info_.facts.push_back(*reading);
+  info_.facts.push_back(text("Finest voxels are %.4g km wide (at most) and %.4g m high.",
+                             layout_.voxel_width_m / 1000, layout_.voxel_height_m));
+  if (layout_.coarsened)
+    info_.facts.push_back(
+        text("Cells of the finest domain, %.4g km wide, are drawn coarser: voxels as narrow "
+             "everywhere would not fit memory; horizontal_resolution_m asks for others.",
+             layout_.narrowest_cell_m / 1000));
+  const glm::dvec2 range_m = forecast_->height_range_m();
+  info_.facts.push_back(
+      text("The data reach from %.0f m to %.1f km.", range_m.x, range_m.y / 1000));
+  // Cloud in the topmost layer is cut, whatever the model had above it.
+  std::size_t cut = 0, cloudy = 0;
+  for (const DomainState& domain : first.domains()) count_cut(domain.columns, cut, cloudy);
   if (cut > 0)
     info_.facts.push_back(
         text("Clouds are cut off at the top of the data, at %.1f km, in %.0f %% of "

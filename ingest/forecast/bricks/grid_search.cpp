@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "forecast/grids/cell_size.h"
 #include "geo/nearest_places.h"
 
 namespace nepho::forecast {
@@ -35,23 +36,9 @@ struct GridSearch::PolygonCells {
 
 namespace {
 
-// Solid angle of a cell (sr), of flat triangles between its corners.
-double area_of(const CellPolygons& cells, std::size_t cell) {
-  glm::dvec3 sum(0.0);
-  const std::uint32_t begin = cells.first[cell], end = cells.first[cell + 1];
-  for (std::uint32_t at = begin; at < end; ++at)
-    sum += glm::cross(unit_vector(cells.corner_deg[at]),
-                      unit_vector(cells.corner_deg[at + 1 < end ? at + 1 : begin]));
-  return glm::length(sum) / 2;
-}
-
 constexpr std::size_t kCandidates = 8;  // cells whose centres are nearest
 
 }  // namespace
-
-double polygon_width_rad(const CellPolygons& cells, std::size_t cell) {
-  return std::sqrt(area_of(cells, cell));
-}
 
 GridSearch::GridSearch(std::shared_ptr<const HorizontalGrid> grid) : grid_(std::move(grid)) {
   if (const CellPolygons* polygons = grid_->polygons()) {

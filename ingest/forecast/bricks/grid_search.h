@@ -49,9 +49,6 @@ class GridSearch {
   std::shared_ptr<const PolygonCells> cells_;  // of a grid of polygons
 };
 
-// Of a square as large as the cell.
-double polygon_width_rad(const CellPolygons& cells, std::size_t cell);
-
 using nepho::lat_lon_deg_of;
 using nepho::unit_vector;
 

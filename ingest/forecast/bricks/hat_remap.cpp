@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <optional>
 
 #include "forecast/bricks/cell_overlap.h"
 #include "forecast/bricks/vertical_hats.h"
-#include "geo/place.h"
 #include "pyramid/touching.h"
 
 #if defined(NEPHO_MUTANT_HALF)
@@ -22,180 +19,124 @@
 #endif
 
 namespace nepho::forecast {
-namespace {
 
-constexpr double kSide_deg = 1;  // longest wall between two corners
-
-struct Entry {
-  Column column;
-  std::uint32_t cell;
-  double solid_angle_sr;
-  friend bool operator<(const Entry& a, const Entry& b) {
-    return a.column != b.column ? a.column < b.column : a.cell < b.cell;
-  }
+// What cells of all domains hold, for one height of their walls.
+struct HatRemap::CloudHeights {
+  double sum_m = 0, cloudy = 0;
 };
-
-double angle_deg(glm::dvec2 a, glm::dvec2 b) {
-  const Ellipsoid ball = Ellipsoid::sphere(1);
-  const glm::dvec3 u = scaled_direction(ball, a, 0), v = scaled_direction(ball, b, 0);
-  return 2 * std::asin(std::min(1.0, glm::length(u - v) / 2)) * 180 / std::numbers::pi;
-}
-
-// Into how many parts walls are cut: the same for all cells, so that neighbours share corners.
-int parts_of_walls(const HorizontalGrid& grid) {
-  double longest_deg = 0;
-  const int step_x = std::max(1, grid.nx() / 16), step_y = std::max(1, grid.ny() / 16);
-  for (int j = 0; j < grid.ny(); j += step_y)
-    for (int i = 0; i < grid.nx(); i += step_x) {
-      const glm::dvec2 here = grid.lat_lon_deg(i, j);
-      for (const glm::dvec2& next : {grid.lat_lon_deg(i + 1, j), grid.lat_lon_deg(i, j + 1)})
-        if (!std::isnan(here.x) && !std::isnan(next.x))
-          longest_deg = std::max(longest_deg, angle_deg(here, next));
-    }
-  return std::clamp(int(std::ceil(longest_deg / kSide_deg)), 1, 30);
-}
-
-// Each polygon as triangles about its first corner, each of these in 4^halvings of great circles:
-// walls that two cells share are cut alike.
-struct PolygonCells {
-  const CellPolygons& polygons;
-  const CellOverlap& overlap;
-  const Ellipsoid& body;
-  double height_m;
-  int halvings;
-
-  static int halvings_of(const CellPolygons& polygons) {
-    double longest_deg = 0;
-    for (std::size_t cell = 0; cell + 1 < polygons.first.size(); ++cell)
-      for (std::uint32_t at = polygons.first[cell] + 1; at < polygons.first[cell + 1]; ++at)
-        longest_deg =
-            std::max(longest_deg, angle_deg(polygons.corner_deg[at - 1], polygons.corner_deg[at]));
-    return std::clamp(int(std::ceil(std::log2(longest_deg / kSide_deg))), 0, 5);
-  }
-  void add(std::size_t cell, std::vector<HatShare>& shares) const {
-    const auto corner = [&](std::uint32_t at) { return unit_vector(polygons.corner_deg[at]); };
-    const std::uint32_t begin = polygons.first[cell], end = polygons.first[cell + 1];
-    for (std::uint32_t at = begin + 2; at < end; ++at)
-      add_triangle(corner(begin), corner(at - 1), corner(at), halvings, shares);
-  }
-
- private:
-  void add_triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, int more,
-                    std::vector<HatShare>& shares) const {
-    if (more > 0) {
-      const glm::dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c),
-                       ca = glm::normalize(c + a);
-      add_triangle(a, ab, ca, more - 1, shares);
-      add_triangle(ab, b, bc, more - 1, shares);
-      add_triangle(ca, bc, c, more - 1, shares);
-      add_triangle(ab, bc, ca, more - 1, shares);
-      return;
-    }
-    const auto scaled = [&](const glm::dvec3& u) {
-      return scaled_direction(body, lat_lon_deg_of(u), height_m);
-    };
-    overlap.add({scaled(a), scaled(b), scaled(c), scaled(c)}, shares);
-  }
-};
-
-void add_cell(const CellOverlap& overlap, const Ellipsoid& body, const HorizontalGrid& grid, int x,
-              int y, int parts, double height_m, std::vector<HatShare>& shares) {
-  const auto corner = [&](int a, int b) {
-    return scaled_direction(body, grid.lat_lon_deg(x + double(a) / parts, y + double(b) / parts),
-                            height_m);
-  };
-  for (int b = 0; b < parts; ++b)
-    for (int a = 0; a < parts; ++a)
-      overlap.add({corner(a, b), corner(a + 1, b), corner(a + 1, b + 1), corner(a, b + 1)}, shares);
-}
-
-}  // namespace
 
 HatRemap::HatRemap(std::shared_ptr<const ShellChart> chart, const Lattice& lattice,
                    const HorizontalGrid& grid, const ForecastColumns& columns,
                    const RemapOptions& options)
+    : HatRemap(std::move(chart), lattice, std::array{HatDomain{grid, columns}}, options) {}
+
+HatRemap::HatRemap(std::shared_ptr<const ShellChart> chart, const Lattice& lattice,
+                   std::span<const HatDomain> domains, const RemapOptions& options)
     : chart_(std::move(chart)),
       lattice_(lattice),
       level_(lattice.max_level()),
       cells_(lattice.cells(lattice.max_level())) {
-  remap_columns(grid, columns, options);
-  overlap_cells(grid, columns);
+  remap_columns(domains, options);
+  overlap_cells(domains);
 }
 
-void HatRemap::remap_columns(const HorizontalGrid& grid, const ForecastColumns& columns,
-                             const RemapOptions& options) {
+void HatRemap::remap_columns(std::span<const HatDomain> domains, const RemapOptions& options) {
+  std::size_t count = 0;
+  for (const HatDomain& domain : domains)
+    count += std::size_t(domain.columns.nx) * std::size_t(domain.columns.ny);
+  ranges_.resize(count);
+  CloudHeights heights;
+  std::size_t first = 0;
+  for (const HatDomain& domain : domains) {
+    remap_domain(domain, first, options, heights);
+    first += std::size_t(domain.columns.nx) * std::size_t(domain.columns.ny);
+  }
+  reference_height_m_ = heights.cloudy > 0 ? heights.sum_m / heights.cloudy : 0;
+}
+
+void HatRemap::remap_domain(const HatDomain& domain, std::size_t first_cell,
+                            const RemapOptions& options, CloudHeights& heights) {
+  const ForecastColumns& columns = domain.columns;
   const VerticalHats vertical(*chart_, cells_[2], options);
   const std::size_t count = std::size_t(columns.nx) * std::size_t(columns.ny);
-  ranges_.resize(count);
+  const std::span<CellRange> ranges(&ranges_[first_cell], count);
   std::vector<glm::dvec2> cloudy_m(count);  // lowest and highest cloud of a column
   const auto column = [&](std::size_t cell) {
     const auto nz = std::size_t(columns.nz), nx = std::size_t(columns.nx);
     const double latitude_deg =
-        grid.lat_lon_deg(double(cell % nx) + 0.5, double(cell / nx) + 0.5).x;
+        domain.grid.lat_lon_deg(double(cell % nx) + 0.5, double(cell / nx) + 0.5).x;
     return ModelColumn{latitude_deg,
                        {&columns.interface_m[cell * (nz + 1)], nz + 1},
                        {&columns.extinction_per_m[cell * nz], nz}};
   };
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t cell) {
     const auto found = vertical.range(column(cell));
-    ranges_[cell] = {found.first, found.count, 0};
+    ranges[cell] = {found.first, found.count, 0};
     cloudy_m[cell] = found.cloudy_m;
   });
-  std::uint64_t total = 0;
-  double sum_m = 0, cloudy = 0;
+  std::uint64_t total = hats_[0].size();
   for (std::size_t cell = 0; cell < count; ++cell) {
-    ranges_[cell].at = total;
-    total += ranges_[cell].count;
-    if (ranges_[cell].count == 0) continue;
-    sum_m += (cloudy_m[cell].x + cloudy_m[cell].y) / 2;
-    ++cloudy;
+    ranges[cell].at = total;
+    total += ranges[cell].count;
+    if (ranges[cell].count == 0) continue;
+    heights.sum_m += (cloudy_m[cell].x + cloudy_m[cell].y) / 2;
+    ++heights.cloudy;
   }
-  reference_height_m_ = cloudy > 0 ? sum_m / cloudy : 0;
+  const bool has_ice = !columns.ice_extinction_per_m.empty();
+  if (has_ice || !hats_[1].empty()) hats_[1].resize(total);
   hats_[0].resize(total);
-  if (!columns.ice_extinction_per_m.empty()) hats_[1].resize(total);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t cell) {
-    const CellRange& range = ranges_[cell];
+    const CellRange& range = ranges[cell];
     if (range.count == 0) return;
     const ModelColumn model = column(cell);
     const auto nz = std::size_t(columns.nz);
     vertical.means(model, model.value_per_m, range.first, {&hats_[0][range.at], range.count});
-    if (hats_[1].empty()) return;
+    if (!has_ice) return;
     vertical.means(model, {&columns.ice_extinction_per_m[cell * nz], nz}, range.first,
                    {&hats_[1][range.at], range.count});
   });
 }
 
-void HatRemap::overlap_cells(const HorizontalGrid& grid, const ForecastColumns& columns) {
+void HatRemap::overlap_domain(const HatDomain& domain, std::size_t first_cell,
+                              const Coverage& finer, std::vector<Entry>& entries) const {
+#ifdef NEPHO_MUTANT_NO_MASK
   const CellOverlap overlap(*chart_, cells_);
-  const CellPolygons* polygons = grid.polygons();
-  const int parts = polygons ? 1 : parts_of_walls(grid);
-  std::optional<PolygonCells> shapes;
-  if (polygons)
-    shapes.emplace(PolygonCells{*polygons, overlap, chart_->body(), reference_height_m_,
-                                PolygonCells::halvings_of(*polygons)});
+#else
+  const CellOverlap overlap(*chart_, cells_, &finer);
+#endif
+  const DomainCells cells(chart_->body(), domain.grid, reference_height_m_);
+  const std::size_t count = std::size_t(domain.columns.nx) * std::size_t(domain.columns.ny);
   constexpr std::size_t kBlock = 256;  // cells
-  std::vector<std::vector<Entry>> of_block((ranges_.size() + kBlock - 1) / kBlock);
+  std::vector<std::vector<Entry>> of_block((count + kBlock - 1) / kBlock);
   tbb::parallel_for(std::size_t{0}, of_block.size(), [&](std::size_t block) {
     std::vector<HatShare> shares;
-    const std::size_t end = std::min(ranges_.size(), (block + 1) * kBlock);
+    const std::size_t end = std::min(count, (block + 1) * kBlock);
     for (std::size_t cell = block * kBlock; cell < end; ++cell) {
-      if (ranges_[cell].count == 0) continue;
+      if (ranges_[first_cell + cell].count == 0) continue;
       shares.clear();
-      const std::size_t nx = std::size_t(columns.nx);
-      if (shapes)
-        shapes->add(cell, shares);
-      else
-        add_cell(overlap, chart_->body(), grid, int(cell % nx), int(cell / nx), parts,
-                 reference_height_m_, shares);
+      cells.for_each_part(cell, [&](const auto& corners) { overlap.add(corners, shares); });
       for (const HatShare& share : shares)
         if (share.solid_angle_sr > 0)
-          of_block[block].push_back({share.column, std::uint32_t(cell), share.solid_angle_sr});
+          of_block[block].push_back(
+              {share.column, std::uint32_t(first_cell + cell), share.solid_angle_sr});
     }
   });
-  std::vector<Entry> entries;
   for (std::vector<Entry>& some : of_block) {
     entries.insert(entries.end(), some.begin(), some.end());
     some = {};
+  }
+}
+
+void HatRemap::overlap_cells(std::span<const HatDomain> domains) {
+  std::vector<Entry> entries;
+  Coverage finer(*chart_, cells_);
+  std::size_t first = 0;
+  for (std::size_t n = 0; n < domains.size(); ++n) {
+    const HatDomain& domain = domains[n];
+    overlap_domain(domain, first, finer, entries);
+    first += std::size_t(domain.columns.nx) * std::size_t(domain.columns.ny);
+    if (n + 1 < domains.size())
+      finer.add(domain.grid, reference_height_m_, domain.columns.without_data);
   }
   tbb::parallel_sort(entries.begin(), entries.end());
   std::vector<Column> rows;

@@ -3,11 +3,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "bricks/lattice.h"
 #include "bricks/shell_chart.h"
+#include "forecast/bricks/coverage.h"
 #include "forecast/forecast.h"
 
 namespace nepho::forecast {
@@ -28,6 +30,13 @@ struct RemapOptions {
   Layers layers = Layers::kSmooth;
 };
 
+// One of the domains that are drawn together, finest first: of a coarser one only that is taken
+// which no finer one covers (coverage.h).
+struct HatDomain {
+  const HorizontalGrid& grid;
+  const ForecastColumns& columns;
+};
+
 // Hat means of a model's cell means at the finest level of a ShellChart (lattice.md 2):
 //
 //   c_g = sum over cells W(cell, g) sum over layers w(layer, k) / (V_h V_v)
@@ -43,6 +52,9 @@ struct RemapOptions {
 // voxel height between its lowest and highest cloud.
 class HatRemap {
  public:
+  HatRemap(std::shared_ptr<const ShellChart> chart, const Lattice& lattice,
+           std::span<const HatDomain> domains, const RemapOptions& options);
+  // One domain.
   HatRemap(std::shared_ptr<const ShellChart> chart, const Lattice& lattice,
            const HorizontalGrid& grid, const ForecastColumns& columns, const RemapOptions& options);
 
@@ -64,15 +76,27 @@ class HatRemap {
     std::uint64_t at = 0;                // of the first in hats_
   };
   struct Tap {
-    std::uint32_t cell;
+    std::uint32_t cell;  // of all domains, one after the other
     float weight;
+  };
+  struct Entry {
+    Column column;
+    std::uint32_t cell;
+    double solid_angle_sr;
+    friend bool operator<(const Entry& a, const Entry& b) {
+      return a.column != b.column ? a.column < b.column : a.cell < b.cell;
+    }
   };
   static constexpr std::uint32_t kNoRow = 0xffffffff;
   using Tile = std::array<std::uint32_t, kBrickSamples * kBrickSamples>;  // rows of its columns
 
-  void remap_columns(const HorizontalGrid& grid, const ForecastColumns& columns,
-                     const RemapOptions& options);
-  void overlap_cells(const HorizontalGrid& grid, const ForecastColumns& columns);
+  struct CloudHeights;
+  void remap_columns(std::span<const HatDomain> domains, const RemapOptions& options);
+  void remap_domain(const HatDomain& domain, std::size_t first, const RemapOptions& options,
+                    CloudHeights& heights);
+  void overlap_domain(const HatDomain& domain, std::size_t first, const Coverage& finer,
+                      std::vector<Entry>& entries) const;
+  void overlap_cells(std::span<const HatDomain> domains);
   void list_tiles(const std::vector<Column>& rows);
   const Tile* tile(NodeKey key) const;
   double value(std::uint32_t row, std::uint32_t k, const std::vector<float>& hats) const;

@@ -7,42 +7,15 @@
 #include <vector>
 
 #include "core/error.h"
-#include "forecast/bricks/grid_search.h"
 #include "forecast/bricks/hat_remap.h"
+#include "forecast/grids/cell_size.h"
 
 namespace nepho::forecast {
 namespace {
 
-constexpr double kLeastHeight_m = 50;       // of a voxel, where nobody asks for less
-constexpr double kMostSampleColumns = 3e7;  // 2 GB of rows and tiles
-
-struct CellSize {
-  double width_m, area_m2;
-};
-
-std::vector<CellSize> some_cells(const HorizontalGrid& grid) {
-  const double radius_m = Ellipsoid::wgs84().equatorial_m;
-  std::vector<CellSize> sizes;
-  if (const CellPolygons* polygons = grid.polygons()) {
-    const std::size_t cells = polygons->first.size() - 1;
-    // Cells without corners are of no size: all are looked at where none of some has any.
-    for (std::size_t step = std::max<std::size_t>(1, cells / 1024); sizes.empty() && step > 0;
-         step = step > 1 ? 1 : 0)
-      for (std::size_t cell = 0; cell < cells; cell += step)
-        if (const double width_m = radius_m * polygon_width_rad(*polygons, cell); width_m > 0)
-          sizes.push_back({width_m, width_m * width_m});
-    return sizes;
-  }
-  const int step_x = std::max(1, grid.nx() / 32), step_y = std::max(1, grid.ny() / 32);
-  for (int j = 0; j < grid.ny(); j += step_y)
-    for (int i = 0; i < grid.nx(); i += step_x) {
-      const auto at = [&](double x, double y) { return unit_vector(grid.lat_lon_deg(x, y)); };
-      const double x_m = radius_m * glm::length(at(i + 1, j + 0.5) - at(i, j + 0.5));
-      const double y_m = radius_m * glm::length(at(i + 0.5, j + 1) - at(i + 0.5, j));
-      if (!std::isnan(x_m * y_m)) sizes.push_back({std::min(x_m, y_m), x_m * y_m});
-    }
-  return sizes;
-}
+constexpr double kLeastHeight_m = 50;         // of a voxel, where nobody asks for less
+constexpr double kMostSampleColumns = 3e7;    // 2 GB of rows and tiles
+constexpr double kMostNestedColumns = 6e6;  // 2 GB, where nobody asked for as many
 
 // Columns at least as narrow as asked; of the model's own width the nearest power of two, where its
 // cells are so wide (500 km) that their edges' curvature counts the next.
@@ -68,32 +41,49 @@ std::vector<SplitMask> split_axes(int horizontal, int vertical) {
 
 }  // namespace
 
-double cell_width_m(const HorizontalGrid& grid) {
-  std::vector<CellSize> sizes = some_cells(grid);
-  std::ranges::sort(sizes, {}, &CellSize::width_m);
-  double total = 0, below = 0;
-  for (const CellSize& size : sizes) total += size.area_m2;
-  for (const CellSize& size : sizes)
-    if ((below += size.area_m2) >= total / 2) return size.width_m;
-  return sizes.back().width_m;
+std::vector<DomainTime> all_domains(const Forecast& forecast) {
+  std::vector<DomainTime> all;
+  for (std::size_t time = 0; time < forecast.times_s().size(); ++time) {
+    std::size_t at = 0;  // behind those that are known, so that the order stays
+    for (const DomainTime& domain : forecast.domains(time)) {
+      const auto known = std::ranges::find(all, domain.domain, &DomainTime::domain);
+      if (known != all.end())
+        at = std::size_t(known - all.begin()) + 1;
+      else
+        all.insert(all.begin() + std::ptrdiff_t(at++), domain);
+    }
+  }
+  return all;
 }
 
 Layout choose_layout(const Forecast& forecast, const LayoutOptions& options) {
   const Ellipsoid body = Ellipsoid::wgs84();
   const double quarter_m = std::numbers::pi / 2 * body.equatorial_m;
-  const auto grid = forecast.grid(0);
   Layout layout;
 
-  const double width_m = options.horizontal_resolution_m.value_or(cell_width_m(*grid));
-  const int horizontal =
-      splits_for(quarter_m / width_m, options.horizontal_resolution_m.has_value());
   double area_m2 = 0;
-  const std::vector<CellSize> sizes = some_cells(*grid);
-  for (const CellSize& size : sizes) area_m2 += size.area_m2 / double(sizes.size());
-  area_m2 *= double(grid->nx()) * grid->ny();
-  layout.voxel_width_m = quarter_m / (kBrickCells * std::exp2(horizontal));
-  if (horizontal > NodeKey::kMaxSplitsXy ||
-      area_m2 / (layout.voxel_width_m * layout.voxel_width_m) > kMostSampleColumns)
+  layout.narrowest_cell_m = 1e30;
+  const std::vector<DomainTime> domains = all_domains(forecast);
+  for (const auto& [domain, time] : domains) {
+    const auto grid = domain->grid(time);
+    layout.narrowest_cell_m = std::min(layout.narrowest_cell_m, cell_width_m(*grid));
+    const std::vector<CellSize> sizes = some_cells(*grid);
+    double mean_m2 = 0;
+    for (const CellSize& size : sizes) mean_m2 += size.area_m2 / double(sizes.size());
+    area_m2 += mean_m2 * double(grid->nx()) * grid->ny();
+  }
+  const double width_m = options.horizontal_resolution_m.value_or(layout.narrowest_cell_m);
+  int horizontal = splits_for(quarter_m / width_m, options.horizontal_resolution_m.has_value());
+  const auto sample_columns = [&] {
+    layout.voxel_width_m = quarter_m / (kBrickCells * std::exp2(horizontal));
+    return area_m2 / (layout.voxel_width_m * layout.voxel_width_m);
+  };
+  const bool nested = domains.size() > 1 && !options.horizontal_resolution_m;
+  while (nested && horizontal > 0 && sample_columns() > kMostNestedColumns) {
+    --horizontal;
+    layout.coarsened = true;
+  }
+  if (horizontal > NodeKey::kMaxSplitsXy || sample_columns() > kMostSampleColumns)
     too_fine("horizontal_resolution_m", width_m);
 
   // From two voxels below the lowest ground, so that hats there have a layer to hold, to the top.

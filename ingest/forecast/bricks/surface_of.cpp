@@ -9,6 +9,7 @@
 #include "bricks/shell_chart.h"
 #include "forecast/bricks/cell_overlap.h"
 #include "forecast/bricks/grid_search.h"
+#include "forecast/bricks/layout.h"
 
 namespace nepho::forecast {
 namespace {
@@ -72,18 +73,22 @@ bool same_place(const HorizontalGrid& a, const HorizontalGrid& b) {
   return true;
 }
 
-// All different places, in order of time.
-std::vector<Piece> pieces_of(const Forecast& forecast) {
-  std::vector<Piece> pieces;
-  for (std::size_t time = 0; time < forecast.times_s().size() && pieces.size() < kMostPieces;
+// All different places of one domain, in order of time; before those of coarser ones.
+void add_pieces(const Forecast& domain, std::vector<Piece>& pieces) {
+  for (std::size_t time = 0; time < domain.times_s().size() && pieces.size() < kMostPieces;
        ++time) {
-    const auto grid = forecast.grid(time);
+    const auto grid = domain.grid(time);
     const auto known = [&](const Piece& piece) { return same_place(*grid, piece.search.grid()); };
     if (std::ranges::any_of(pieces, known)) continue;
-    Piece piece{GridSearch(grid), forecast.ground(time)};
+    Piece piece{GridSearch(grid), domain.ground(time)};
     if (piece.has(piece.ground.height_m) || piece.has(piece.ground.water))
       pieces.push_back(std::move(piece));
   }
+}
+
+std::vector<Piece> pieces_of(const Forecast& forecast) {
+  std::vector<Piece> pieces;
+  for (const DomainTime& each : all_domains(forecast)) add_pieces(*each.domain, pieces);
   return pieces;
 }
 

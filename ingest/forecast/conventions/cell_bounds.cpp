@@ -59,10 +59,11 @@ std::optional<std::vector<double>> axis_bounds(const DataFile& file, const FileV
   return edges;
 }
 
-std::vector<double> axis_edges(const DataFile& file, const FileVariable& axis,
-                               const std::vector<double>& centres, double factor, bool turns) {
-  auto edges = axis_bounds(file, axis, centres, factor, turns);
-  return edges ? std::move(*edges) : edges_between(centres);
+AxisWalls axis_walls(const DataFile& file, const FileVariable& axis,
+                     const std::vector<double>& centres, double factor, bool turns) {
+  if (auto edges = axis_bounds(file, axis, centres, factor, turns))
+    return {std::move(*edges), true};
+  return {edges_between(centres), centres.size() > 1};
 }
 
 std::optional<CellCorners> cell_corners(const DataFile& file, const FileVariable& latitude,

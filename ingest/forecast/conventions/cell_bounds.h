@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "forecast/conventions/line_grid.h"
 #include "forecast/files/data_file.h"
 
 namespace nepho::forecast {
@@ -15,9 +16,9 @@ namespace nepho::forecast {
 std::optional<std::vector<double>> axis_bounds(const DataFile& file, const FileVariable& axis,
                                                const std::vector<double>& centres, double factor,
                                                bool turns);
-// The same, or else edges_between().
-std::vector<double> axis_edges(const DataFile& file, const FileVariable& axis,
-                               const std::vector<double>& centres, double factor, bool turns);
+// The same, or else edges_between(); not known of one centre without bounds.
+AxisWalls axis_walls(const DataFile& file, const FileVariable& axis,
+                     const std::vector<double>& centres, double factor, bool turns);
 
 // Half way between centres; half a step beyond both ends. One centre: a cell of one unit.
 std::vector<double> edges_between(const std::vector<double>& centres);

@@ -7,16 +7,19 @@
 #include <optional>
 
 #include "core/error.h"
+#include "forecast/conventions/cf_air.h"
 #include "forecast/conventions/convention.h"
 #include "forecast/conventions/dimension_roles.h"
 #include "forecast/conventions/field_reader.h"
 #include "forecast/conventions/grid_mapping.h"
 #include "forecast/conventions/horizontal.h"
 #include "forecast/conventions/model.h"
+#include "forecast/conventions/particle_sizes.h"
+#include "forecast/conventions/plain_times.h"
 #include "forecast/conventions/unstructured.h"
 #include "forecast/conventions/vertical.h"
 #include "forecast/files/file_time.h"
-#include "forecast/water/air.h"
+#include "forecast/water/assumed_water.h"
 #include "units/constants.h"
 
 namespace nepho::forecast {
@@ -29,54 +32,24 @@ struct CfFile {
   std::shared_ptr<FieldReader> reader = std::make_shared<FieldReader>();
   Vertical vertical;
   std::shared_ptr<const HorizontalGrid> grid;
-  const FileVariable *temperature = nullptr, *vapour = nullptr, *terrain = nullptr, *land = nullptr;
+  std::optional<CfAir> air;
+  const FileVariable *terrain = nullptr, *land = nullptr;
   UnitOf terrain_unit;  // to m: of a height, or of a geopotential
-  Vapour vapour_is = Vapour::kNone;
-  double pressure_factor = 1;
-  std::optional<std::vector<float>> standard_Pa;  // of heights, where no pressure is known
 
   std::vector<float> field(const FileVariable& variable, std::size_t time) const {
     return reader->field(variable, roles.z, vertical.from_top, time);
   }
-  Air air(std::size_t time) const;
   ForecastGround ground(std::size_t time) const;
   std::vector<float> terrain_m(std::size_t time) const;
   void restrict_to(const Region& region, Model& model);
   void find_water_in(Model& model) const;
-  void find_air();
   void find_ground();
-  void choose_pressure(Model& model);
-  void make_standard_air();
   std::vector<std::int64_t> times_ns(Model& model) const;
 };
 
 void scale(std::vector<float>& values, const UnitOf& unit) {
   if (unit.factor == 1 && unit.offset == 0) return;
   for (float& value : values) value = float(double(value) * unit.factor + unit.offset);
-}
-
-Air CfFile::air(std::size_t time) const {
-  Air air;
-  if (!vertical.level_pressure_Pa.empty()) {
-    air.level_pressure_Pa = vertical.level_pressure_Pa;
-  } else if (vertical.pressure) {
-    air.pressure_Pa = field(*vertical.pressure, time);
-    for (float& p : air.pressure_Pa) p *= float(pressure_factor);
-  } else if (vertical.pressure_Pa) {
-    air.pressure_Pa = vertical.pressure_Pa(time);
-  } else if (standard_Pa) {
-    air.pressure_Pa = *standard_Pa;
-  }
-  if (temperature) {
-    air.temperature_K = field(*temperature, time);
-    scale(air.temperature_K, unit_of(*temperature, kTemperature));
-  }
-  if (vapour) {
-    air.vapour = field(*vapour, time);
-    air.vapour_is = vapour_is;
-    scale(air.vapour, unit_of(*vapour, kDimensionless));
-  }
-  return air;
 }
 
 std::vector<float> CfFile::terrain_m(std::size_t time) const {
@@ -106,36 +79,25 @@ void CfFile::restrict_to(const Region& region, Model& model) {
 void CfFile::find_water_in(Model& model) const {
   const auto accept = [this](const FileVariable& v) { return reader->is_field(v, roles.z); };
   model.water = find_water(*file, accept);
-  const bool has_ice =
-      std::ranges::any_of(model.water, [](const WaterVariable& w) { return is_ice(w.species); });
-  for (WaterVariable& water : model.water)
-    if (!has_ice && is_whole_condensate(water)) {
-      water.freezes_below_K = kWholeCondensateFreezes_K;
-      model.assumptions.push_back(water.variable->name +
-                                  " holds liquid and ice: ice below -15 degC is assumed.");
-    }
+  divide_phases(model.water, model.assumptions);
   model.cloud_fraction = find_named(*file, names::kCloudFraction, accept);
-  model.droplet_number = find_named(*file, names::kDropletNumber, accept);
-}
-
-void CfFile::find_air() {
-  const auto on_levels = [&](const Dimension& dimension) {
-    return [this, dimension](const FileVariable& v) {
-      return reader->is_field(v, roles.z) && unit_of(v, dimension).fits;
-    };
-  };
-  temperature = find_named(*file, names::kTemperature, on_levels(kTemperature));
-  const auto humidity = [&](const VariableNames& names, Vapour kind) {
-    if (vapour) return;
-    vapour = find_named(*file, names, on_levels(kDimensionless));
-    if (vapour) vapour_is = kind;
-    // `r` is relative humidity to some and a mixing ratio to others.
-    if (vapour && kind == Vapour::kRelative && vapour->text("units").find('g') != std::string::npos)
-      vapour_is = Vapour::kMixingRatio;
-  };
-  humidity(names::kSpecificHumidity, Vapour::kSpecific);
-  humidity(names::kVapourMixingRatio, Vapour::kMixingRatio);
-  humidity(names::kRelativeHumidity, Vapour::kRelative);
+  find_sizes(accept, model);
+  if (!model.water.empty()) return;
+  WaterVariable assumed;
+  assumed.variable = model.cloud_fraction;
+  assumed.basis = Basis::kVolume;
+  assumed.freezes_below_K = kAssumedIce_K;
+  assumed.liquid_above_K = kAssumedLiquid_K;
+  assumed.from_fraction = true;
+  model.water.push_back(assumed);
+  model.assumptions.push_back(
+      "There is no cloud water, only the cloud fraction " + model.cloud_fraction->name +
+      ": a cell's cloudy part is assumed to hold 0.21 g/m3 exp(-z / h) of water at the height z "
+      "over "
+      "the ground, h = 700 m ln(1 + column vapour in kg/m2), ice from -10 degC to -30 degC (Kiehl "
+      "et "
+      "al. 1998)" +
+      (air->has_vapour() ? "." : "; there is no vapour, 25 kg/m2 are taken."));
 }
 
 void CfFile::find_ground() {
@@ -157,40 +119,6 @@ void CfFile::find_ground() {
                     [&](const FileVariable& v) { return reader->is_surface(v); });
 }
 
-// Densities of heights without pressure: the standard atmosphere's at the middle of the layers.
-void CfFile::make_standard_air() {
-  const std::vector<float> z = vertical.interfaces_m(0, nullptr);
-  const std::size_t nz = file->size(roles.z), cells = z.size() / (nz + 1);
-  std::vector<float> pressure(nz * cells);
-  for (std::size_t n = 0; n < cells; ++n)
-    for (std::size_t k = 0; k < nz; ++k) {
-      const double middle = 0.5 * (double(z[n * (nz + 1) + k]) + double(z[n * (nz + 1) + k + 1]));
-      constexpr double kRadius_m = 6356766;
-      pressure[k * cells + n] =
-          float(nepho::forecast::standard_pressure_Pa(kRadius_m * middle / (kRadius_m + middle)));
-    }
-  standard_Pa = std::move(pressure);
-}
-
-void CfFile::choose_pressure(Model& model) {
-  if (vertical.level_pressure_Pa.empty() && !vertical.pressure)
-    vertical.pressure = find_named(*file, names::kPressure, [&](const FileVariable& v) {
-      return reader->is_field(v, roles.z) && unit_of(v, kPressure).fits;
-    });
-  if (vertical.pressure) pressure_factor = unit_of(*vertical.pressure, kPressure).factor;
-  const bool per_volume = std::ranges::all_of(
-      model.water, [](const WaterVariable& w) { return w.basis == Basis::kVolume; });
-  if (vertical.level_pressure_Pa.empty() && !vertical.pressure && !vertical.pressure_Pa) {
-    make_standard_air();
-    if (!per_volume)
-      model.assumptions.push_back(
-          "There is no pressure: air densities are the standard atmosphere's at these heights.");
-  }
-  if (!temperature && !per_volume)
-    model.assumptions.push_back(
-        "There is no temperature: the standard atmosphere's is taken for densities.");
-}
-
 std::vector<std::int64_t> CfFile::times_ns(Model& model) const {
   const auto no_time = [&] {
     model.assumptions.push_back("The file does not say its time: 1970-01-01 00:00 UTC is taken.");
@@ -210,6 +138,11 @@ std::vector<std::int64_t> CfFile::times_ns(Model& model) const {
     axis = at == file->variables().end() ? nullptr : &*at;
   }
   if (axis) return read_times_ns(*file, *axis);
+  if (roles.time >= 0)
+    if (const auto plain = plain_times_ns(*file, roles.time)) {
+      model.assumptions.push_back("The times count from no date: from 1970-01-01 00:00 UTC on.");
+      return *plain;
+    }
   if (roles.time >= 0 && file->size(roles.time) > 1)
     throw Error({"the file does not say which times it holds",
                  file->path() + " [" + file->name(roles.time) + "]",
@@ -217,10 +150,24 @@ std::vector<std::int64_t> CfFile::times_ns(Model& model) const {
   return no_time();
 }
 
+// A cloud fraction on levels, for files without water; null where there is none.
+const FileVariable* first_fraction(const DataFile& file) {
+  return find_named(file, names::kCloudFraction, [&](const FileVariable& v) {
+    if (!v.numeric || v.dimensions.size() < 2) return false;
+    try {
+      return dimension_roles(file, v).z >= 0;
+    } catch (const Error&) {
+      return false;  // the cover of columns
+    }
+  });
+}
+
 // The variable whose dimensions stand for all: the first water that has any grid.
 const FileVariable* first_water(const DataFile& file) {
   const auto found =
       find_water(file, [](const FileVariable& v) { return v.dimensions.size() >= 2; });
+  if (found.empty())
+    if (const FileVariable* fraction = first_fraction(file)) return fraction;
   require_water(file, found);
   return found.front().variable;
 }
@@ -264,32 +211,34 @@ Model model_of(const std::shared_ptr<CfFile>& cf, const std::optional<Region>& r
   model.ny = reader.ny;
   model.nz = int(file.size(cf->roles.z));
   model.utc_ns = cf->times_ns(model);
+  cf->air.emplace(cf->reader, cf->roles.z);
   cf->find_water_in(model);
-  cf->find_air();
   cf->find_ground();
   // `vertical` is part of the CfFile that these ask: a shared pointer would never let go.
   const CfFile* self = cf.get();
   VerticalRequest request{cf->reader,
                           &first,
                           cf->roles.z,
-                          cf->temperature,
-                          [self](std::size_t time) { return self->air(time); },
+                          cf->air->temperature(),
+                          [self](std::size_t time) { return self->air->at(time, self->vertical); },
                           {}};
   if (cf->terrain) request.terrain_m = [self](std::size_t time) { return self->terrain_m(time); };
   cf->vertical = find_vertical(request);
-  cf->choose_pressure(model);
+  cf->air->choose_pressure(cf->vertical, model.water, model.assumptions, model.facts);
   const auto say = [](std::vector<std::string>& to, const std::vector<std::string>& from) {
     to.insert(to.end(), from.begin(), from.end());
   };
   say(model.assumptions, cf->vertical.assumptions);
   say(model.facts, cf->vertical.facts);
+  say(model.assumptions, cf->air->untested_names(cf->vertical));
   model.heights_change = cf->vertical.heights_change;
   model.heights_on_ellipsoid = cf->vertical.on_ellipsoid;
   model.field = [cf](const FileVariable& v, std::size_t time) { return cf->field(v, time); };
   model.grid = [cf](std::size_t) { return cf->grid; };
-  model.air = [cf](std::size_t time) { return cf->air(time); };
+  model.air = [cf](std::size_t time) { return cf->air->at(time, cf->vertical); };
   model.interfaces_m = cf->vertical.interfaces_m;
   model.height_range_m = cf->vertical.height_range_m;
+  model.has_land_mask = cf->land;
   if (cf->terrain || cf->land) model.ground = [cf](std::size_t time) { return cf->ground(time); };
   return model;
 }

@@ -22,6 +22,8 @@ constexpr double kUsualSphere_m = 6371229;
 // How a map's axes count: lengths, degrees of a rotated system, angles of view.
 enum class Axes { kLength, kDegrees, kView };
 
+constexpr double kDegree_m = kUsualSphere_m * M_PI / 180;
+
 // GeographicLib's where it has the map, else PROJ's of the name `proj`.
 struct KnownMap {
   const char* name;
@@ -245,9 +247,12 @@ std::unique_ptr<HorizontalGrid> cf_map_grid(const DataFile& file, const FileVari
   const auto edges = [&](const FileVariable& axis, double scale) {
     std::vector<double> centres = file.read_all(axis);
     for (double& value : centres) value *= scale;
-    return axis_edges(file, axis, std::move(centres), scale, false);
+    return axis_walls(file, axis, centres, scale, false);
   };
-  return map_edges_grid(edges(x, factor.x), edges(y, factor.y), projection);
+  AxisWalls x_walls = edges(x, factor.x), y_walls = edges(y, factor.y);
+  const double unit_m = axes == Axes::kDegrees ? kDegree_m : 1;
+  widen_lone(x_walls, y_walls, unit_m, unit_m, assumptions);
+  return map_edges_grid(std::move(x_walls.edges), std::move(y_walls.edges), projection);
 }
 
 }  // namespace nepho::forecast

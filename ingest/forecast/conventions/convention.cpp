@@ -1,6 +1,7 @@
 #include "forecast/conventions/convention.h"
 
 #include <array>
+#include <filesystem>
 
 #include "core/error.h"
 
@@ -29,9 +30,10 @@ std::unique_ptr<Forecast> open_file(const std::string& path, const OpenRequest& 
 std::unique_ptr<Forecast> open_forecast(const OpenRequest& request) {
   if (request.files.empty())
     throw Error({"a forecast without files", "", "at least one .nc file", "none", ""});
-  std::vector<std::unique_ptr<Forecast>> parts;
-  for (const std::string& path : request.files) parts.push_back(open_file(path, request));
-  return join_forecasts(std::move(parts));
+  std::vector<NamedForecast> parts;
+  for (const std::string& path : request.files)
+    parts.push_back({std::filesystem::path(path).filename().string(), open_file(path, request)});
+  return nest_forecasts(std::move(parts));
 }
 
 }  // namespace nepho::forecast

@@ -56,6 +56,10 @@ Role of_coordinate(const FileVariable& axis) {
   return Role::kUnknown;
 }
 
+Role of_letter(char axis) {
+  return axis == 'T' ? Role::kTime : axis == 'Z' ? Role::kLevel : axis == 'Y' ? Role::kY : Role::kX;
+}
+
 Role of_name(const std::string& dimension) {
   const std::string name = lower(dimension);
   if (any_of(name, {"cell", "cells", "ncell", "ncells", "ncells_2", "ncol", "ncells_horizontal",
@@ -64,12 +68,13 @@ Role of_name(const std::string& dimension) {
   if (any_of(name, {"time", "t", "times", "step", "valid_time", "forecast_time", "time_counter"}))
     return Role::kTime;
   if (any_of(name, {"lat", "latitude", "y", "yc", "rlat", "nj", "south_north", "nlat", "ygrid_0",
-                    "grid_yt", "nlats"}))
+                    "grid_yt", "nlats", "yt", "yh"}))
     return Role::kY;
   if (any_of(name, {"lon", "longitude", "x", "xc", "rlon", "ni", "west_east", "nlon", "xgrid_0",
-                    "grid_xt", "nlons"}))
+                    "grid_xt", "nlons", "xt", "xh"}))
     return Role::kX;
-  if (any_of(name, {"z", "k", "nz", "zt", "zc", "pfull", "full_level", "nlev", "bottom_top"}) ||
+  if (any_of(name, {"z", "k", "nz", "zt", "zc", "pfull", "full_level", "nlev", "bottom_top", "nk",
+                    "zh", "zu_3d"}) ||
       starts(name, {"lev", "plev", "isobaric", "height", "altitude", "alt", "pressure", "hybrid",
                     "model_level", "lv_", "mlev", "ilev"}))
     return Role::kLevel;
@@ -77,22 +82,24 @@ Role of_name(const std::string& dimension) {
 }
 
 // Latitudes over two of the variable's dimensions.
-const FileVariable* plane_of(const DataFile& file, const VariableNames& names,
-                             const FileVariable& variable) {
+const FileVariable* plane_of(const DataFile& file, Quantity names, const FileVariable& variable) {
   return find_named(file, names, [&](const FileVariable& v) {
-    int planes = 0;
+    int planes = 0, long_planes = 0;
     for (const int d : v.dimensions) {
       const bool ours = std::ranges::find(variable.dimensions, d) != variable.dimensions.end();
       if (!ours) return false;
-      planes += file.size(d) > 1 && of_name(file.name(d)) != Role::kTime;
+      const bool place = of_name(file.name(d)) != Role::kTime;
+      planes += place;
+      long_planes += place && file.size(d) > 1;
     }
-    return v.numeric && planes == 2;
+    // A grid of one row or column has it, too.
+    return v.numeric && (planes == 2 || long_planes == 2);
   });
 }
 
 // One-dimensional coordinates of cells that are no product of two axes.
 bool unstructured(const DataFile& file, const FileVariable& variable, int dimension) {
-  const auto along = [&](const VariableNames& names) {
+  const auto along = [&](Quantity names) {
     return find_named(file, names, [&](const FileVariable& v) {
              return v.dimensions == std::vector<int>{dimension} && v.name != file.name(dimension);
            }) != nullptr;
@@ -121,6 +128,10 @@ DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variabl
   };
   std::vector<int> left;
   for (const int d : variable.dimensions) {
+    if (const char axis = file.dimensions()[std::size_t(d)].axis) {
+      give(of_letter(axis), d);
+      continue;
+    }
     if (roles.cells < 0 && unstructured(file, variable, d)) {
       roles.cells = roles.x = d;
       continue;
@@ -147,14 +158,18 @@ DimensionRoles dimension_roles(const DataFile& file, const FileVariable& variabl
   for (const int d : left)
     if (d != roles.y && d != roles.x) give(of_name(file.name(d)), d);
   if (roles.y < 0 && roles.x < 0)
-    throw Error({"the cloud water has no horizontal grid", file.where(variable),
-                 "dimensions of latitude and longitude, or y and x", file.shape_text(variable),
-                 "profiles over time are no volume"});
+    throw Error(
+        {"the cloud water has no horizontal grid", file.where(variable),
+         "dimensions of latitude and longitude, or y and x", file.shape_text(variable),
+         "profiles over time are no volume; other names of dimensions can be told in a file for "
+         "--names: x_axis, y_axis, level_axis"});
   if (roles.z < 0 || (roles.y < 0 && roles.cells < 0) || roles.x < 0)
     throw Error({"the cloud water's dimensions are not understood", file.where(variable),
                  "level, y and x, by units, axis, standard_name or usual names",
                  file.shape_text(variable),
-                 "set the attribute `axis` (Z, Y, X) of each coordinate"});
+                 "set the attribute `axis` (Z, Y, X) of each coordinate, or name the dimensions in "
+                 "a file for "
+                 "--names: x_axis, y_axis, level_axis"});
   return roles;
 }
 

@@ -16,10 +16,11 @@ namespace nepho::forecast {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kDegree_m = 111195;  // of latitude, on a sphere of 6371 km
 
 // Values of an axis in degrees; an axis without units counts as degrees where it is named so.
 std::optional<std::vector<double>> degrees(const DataFile& file, const FileVariable& axis,
-                                           const VariableNames& names) {
+                                           Quantity names) {
   std::vector<double> values = file.read_all(axis);
   const UnitOf unit = unit_of(axis, kAngle);
   const FileVariable* named =
@@ -64,13 +65,14 @@ Fields fields_of(const DataFile& file, const DimensionRoles& roles, FieldReader 
 }
 
 std::unique_ptr<HorizontalGrid> grid_of_fields(const DataFile& file, const DimensionRoles& roles,
-                                               Fields fields) {
+                                               Fields fields,
+                                               std::vector<std::string>& assumptions) {
   const int nx = int(file.size(roles.x)), ny = int(file.size(roles.y));
   const std::string where =
       file.path() + " [" + roles.latitude->name + ", " + roles.longitude->name + "]";
   const auto row = std::size_t(nx);
   // Axes written out in full: rows of one latitude and columns of one longitude. They go around.
-  bool axes = true;
+  bool axes = nx > 1 && ny > 1;
   for (std::size_t n = 0; n < fields.latitude_deg.size() && axes; ++n)
     axes = fields.latitude_deg[n] == fields.latitude_deg[n - n % row] &&
            fields.longitude_deg[n] == fields.longitude_deg[n % row];
@@ -83,6 +85,8 @@ std::unique_ptr<HorizontalGrid> grid_of_fields(const DataFile& file, const Dimen
   }
   if (auto corners = cell_corners(file, *roles.latitude, *roles.longitude, nx, ny, fields.factor))
     return corners_grid(nx, ny, std::move(corners->latitude), std::move(corners->longitude), where);
+  if (nx == 1 || ny == 1)
+    return line_grid(nx, ny, fields.latitude_deg, fields.longitude_deg, where, assumptions);
   return points_grid(nx, ny, std::move(fields.latitude_deg), std::move(fields.longitude_deg),
                      where);
 }
@@ -157,7 +161,7 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const Dimens
                                               std::string& how) {
   const std::string where =
       file.path() + " [" + file.name(roles.y) + ", " + file.name(roles.x) + "]";
-  const bool has_fields = roles.latitude && file.size(roles.x) > 1 && file.size(roles.y) > 1;
+  const bool has_fields = roles.latitude;
   std::optional<Fields> fields;
   if (has_fields) fields = fields_of(file, roles, reader);
   const FileVariable* mapping = map_of(file, water);
@@ -183,7 +187,7 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const Dimens
                                 : " the file's latitudes and longitudes."));
   }
   how = "fields " + (has_fields ? roles.latitude->name + ", " + roles.longitude->name : "");
-  if (has_fields) return grid_of_fields(file, roles, std::move(*fields));
+  if (has_fields) return grid_of_fields(file, roles, std::move(*fields), assumptions);
   how = "axes " + file.name(roles.y) + ", " + file.name(roles.x);
   const FileVariable& y = need_axis(file, roles.y, water);
   const FileVariable& x = need_axis(file, roles.x, water);
@@ -195,13 +199,18 @@ std::shared_ptr<const HorizontalGrid> cf_grid(const DataFile& file, const Dimens
       const UnitOf unit = unit_of(axis, kAngle);
       return unit.fits ? unit.factor / kDegree : 1;
     };
-    return axes_grid(*latitude, *longitude, where,
-                     {axis_edges(file, y, *latitude, factor(y), false),
-                      axis_edges(file, x, *longitude, factor(x), true)});
+    AxisWalls lat = axis_walls(file, y, *latitude, factor(y), false),
+              lon = axis_walls(file, x, *longitude, factor(x), true);
+    const double along = std::max(0.01, std::cos((*latitude)[latitude->size() / 2] * kDegree));
+    widen_lone(lon, lat, kDegree_m * along, kDegree_m, assumptions);
+    return axes_grid(*latitude, *longitude, where, {std::move(lat.edges), std::move(lon.edges)});
   }
   if (unit_of(x, kLength).fits && unit_of(y, kLength).fits) {
     assumptions.push_back(kNoPlace);
-    return plane_grid(centred_m(file, x), centred_m(file, y));
+    const std::vector<double> xs = centred_m(file, x), ys = centred_m(file, y);
+    AxisWalls x_walls{edges_between(xs), xs.size() > 1}, y_walls{edges_between(ys), ys.size() > 1};
+    widen_lone(x_walls, y_walls, 1, 1, assumptions);
+    return plane_edges_grid(std::move(x_walls.edges), std::move(y_walls.edges));
   }
   throw Error({"the grid has no place", where, "latitudes and longitudes in degrees, or m of a map",
                "units \"" + y.text("units") + "\" and \"" + x.text("units") + "\"",

@@ -32,7 +32,7 @@ void note_datum(Vertical& vertical, Levels& levels) {
 }
 
 // A field of level heights: geometric, geopotential height, or geopotential.
-bool by_level_field(const VerticalRequest& request, Vertical& vertical, const VariableNames& wanted,
+bool by_level_field(const VerticalRequest& request, Vertical& vertical, Quantity wanted,
                     const std::function<UnitOf(const FileVariable&)>& unit, double scale,
                     bool geopotential) {
   const FieldReader& reader = *request.reader;

@@ -262,12 +262,17 @@ std::unique_ptr<HorizontalGrid> map_grid(const std::vector<double>& x_m,
   return map_edges_grid(edges_between(x_m), edges_between(y_m), projection);
 }
 
-std::unique_ptr<HorizontalGrid> plane_grid(std::vector<double> x_m, std::vector<double> y_m) {
+std::unique_ptr<HorizontalGrid> plane_edges_grid(std::vector<double> x_m, std::vector<double> y_m) {
   MapSpec spec;
   spec.kind = MapKind::kTransverseMercator;
   spec.equatorial_m = constants::kWgs84Equatorial_m;
   spec.polar_m = constants::kWgs84Polar_m;
-  return map_grid(std::move(x_m), std::move(y_m), MapProjection(spec));
+  return map_edges_grid(std::move(x_m), std::move(y_m), MapProjection(spec));
+}
+
+std::unique_ptr<HorizontalGrid> plane_grid(const std::vector<double>& x_m,
+                                           const std::vector<double>& y_m) {
+  return plane_edges_grid(edges_between(x_m), edges_between(y_m));
 }
 
 }  // namespace nepho::forecast

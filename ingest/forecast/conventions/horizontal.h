@@ -47,8 +47,11 @@ std::unique_ptr<HorizontalGrid> corners_grid(int nx, int ny, std::vector<double>
                                              std::vector<double> longitude_deg,
                                              const std::string& where);
 
-// A plane that touches the planet at 0 N 0 E, for data in metres without a place.
-std::unique_ptr<HorizontalGrid> plane_grid(std::vector<double> x_m, std::vector<double> y_m);
+// A plane that touches the planet at 0 N 0 E, for data in metres without a place: of centres, or of
+// edges.
+std::unique_ptr<HorizontalGrid> plane_grid(const std::vector<double>& x_m,
+                                           const std::vector<double>& y_m);
+std::unique_ptr<HorizontalGrid> plane_edges_grid(std::vector<double> x_m, std::vector<double> y_m);
 inline constexpr const char* kNoPlace =
     "The grid has no place on the planet: it is laid around 0 N 0 E.";
 

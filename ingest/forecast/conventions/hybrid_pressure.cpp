@@ -103,9 +103,9 @@ std::optional<Coefficients> by_names(const DataFile& file, int z) {
   const std::size_t nz = file.size(z);
   const auto read = [&](const char* name, std::size_t more) {
     std::vector<double> values;
-    const FileVariable* v = find_named(file, {{}, {name}}, [](const FileVariable& found) {
-      return found.numeric && found.dimensions.size() == 1;
-    });
+    const FileVariable* v = find_named(
+        file, std::vector<std::string>{name},
+        [](const FileVariable& found) { return found.numeric && found.dimensions.size() == 1; });
     if (!v || file.values_in(*v) <= more) return values;
     const auto first = first_of_some(file, z, file.values_in(*v) - more);
     if (!first) return values;
@@ -121,9 +121,11 @@ std::optional<Coefficients> by_names(const DataFile& file, int z) {
   const bool halves_only = c.a.level.empty();
   if (halves_only && c.a.interface.empty()) return {};
   const char* const name = halves_only ? "hyai" : "hyam";
-  const FileVariable* a = find_named(file, {{}, {name}}, [](const auto& v) { return v.numeric; });
-  const double factor = a_factor(file, *a, halves_only ? c.a.interface : c.a.level,
-                                 find_named(file, {{}, {"p0"}}, [](const auto&) { return true; }));
+  const FileVariable* a =
+      find_named(file, std::vector<std::string>{name}, [](const auto& v) { return v.numeric; });
+  const double factor =
+      a_factor(file, *a, halves_only ? c.a.interface : c.a.level,
+               find_named(file, std::vector<std::string>{"p0"}, [](const auto&) { return true; }));
   scale(c.a.level, factor);
   scale(c.a.interface, factor);
   if (halves_only)
@@ -134,6 +136,37 @@ std::optional<Coefficients> by_names(const DataFile& file, int z) {
   c.how = halves_only ? "hydrostatic from hybrid half levels hyai, hybi"
                       : "hydrostatic from hybrid levels hyam, hybm";
   return c;
+}
+
+// Of half levels, from the top or the ground, beside the levels: ak and bk of FV3 (global
+// attributes of its history files; also pk), in Pa.
+std::optional<Coefficients> by_half_coefficients(const DataFile& file, int z) {
+  const std::size_t nz = file.size(z);
+  const auto read = [&](const char* name) -> std::vector<double> {
+    const FileVariable* v = find_named(file, {{}, {name}}, [&](const FileVariable& found) {
+      return found.numeric && found.dimensions.size() == 1 && file.values_in(found) == nz + 1;
+    });
+    if (v) return file.read_all(*v);
+    const FileAttribute* attribute = file.attribute(name);
+    return attribute && attribute->numbers.size() == nz + 1 ? attribute->numbers
+                                                            : std::vector<double>{};
+  };
+  for (const char* const name : {"ak", "pk"}) {
+    Coefficients c;
+    c.a.interface = read(name);
+    c.b.interface = read("bk");
+    if (c.a.interface.empty() || c.b.interface.empty()) continue;
+    const FileVariable* a = find_named(file, {{}, {name}}, [](const auto& v) { return v.numeric; });
+    if (a)
+      if (const UnitOf unit = unit_of(*a, kPressure); unit.fits) scale(c.a.interface, unit.factor);
+    for (std::size_t k = 0; k < nz; ++k) {
+      c.a.level.push_back(0.5 * (c.a.interface[k] + c.a.interface[k + 1]));
+      c.b.level.push_back(0.5 * (c.b.interface[k] + c.b.interface[k + 1]));
+    }
+    c.how = std::string("hydrostatic from hybrid half levels ") + name + ", bk";
+    return c;
+  }
+  return {};
 }
 
 bool find_surface(const FieldReader& reader, HybridPressure& hybrid, const FileVariable* named) {
@@ -164,6 +197,7 @@ std::optional<HybridPressure> hybrid_pressure(const VerticalRequest& request, bo
   const DataFile& file = *reader.file;
   auto found = by_terms(file, request.z);
   if (!found) found = by_names(file, request.z);
+  if (!found) found = by_half_coefficients(file, request.z);
   if (!found) return {};
   HybridPressure hybrid;
   hybrid.a_Pa = std::move(found->a.level);

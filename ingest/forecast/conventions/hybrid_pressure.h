@@ -25,9 +25,9 @@ struct HybridPressure {
 // By formula_terms (atmosphere_hybrid_sigma_pressure_coordinate, atmosphere_sigma_coordinate,
 // atmosphere_ln_pressure_coordinate: CF 1.11, appendix D), or by coefficients under the names of
 // ECMWF's and NCAR's models (hyam, hybm; hyai, hybi), of which a level axis of numbers may choose
-// some. Levels without coefficients of their own are at the mean pressure of their interfaces
-// (Simmons & Burridge 1981). None: no such levels; throws Error where they are, but ps is missing,
-// unless `optional`.
+// some, or FV3's (ak, bk). Levels without coefficients of their own are at the mean pressure of
+// their interfaces (Simmons & Burridge 1981). None: no such levels; throws Error where they are,
+// but ps is missing, unless `optional`.
 std::optional<HybridPressure> hybrid_pressure(const VerticalRequest& request, bool optional);
 
 // Its pressures as Vertical::pressure_Pa gives them.

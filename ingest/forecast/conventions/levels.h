@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "forecast/conventions/hybrid_pressure.h"
 #include "forecast/conventions/vertical.h"
 
 namespace nepho::forecast {
@@ -53,6 +54,12 @@ struct Levels {
   // [k][j][i] heights of levels, in the file's unit, to interfaces.
   std::vector<float> of_levels(const std::vector<float>& field, std::size_t time) const;
 };
+// Hydrostatic heights of the air's pressures; `variable` is what they come from. Interfaces stand
+// at pressures of their own where either is known.
+void set_hydrostatic(const VerticalRequest& request, Vertical& vertical,
+                     const FileVariable& variable, std::optional<HybridPressure> hybrid,
+                     PressureField interface_Pa = {});
+
 std::shared_ptr<Levels> levels_of(const VerticalRequest& request, const FileVariable& variable,
                                   int z);
 
@@ -60,6 +67,7 @@ std::shared_ptr<Levels> levels_of(const VerticalRequest& request, const FileVari
 using Way = bool(const VerticalRequest&, Vertical&);
 Way by_half_levels, by_level_heights, by_geopotential_height, by_geopotential,
     by_height_axis;                                             // height_levels.cpp
+Way by_thickness, by_pressure_thickness;                        // layer_thickness.cpp
 Way by_hybrid_heights;                                          // hybrid_heights.cpp
 Way by_hybrid_pressure, by_pressure_levels, by_pressure_field;  // pressure_levels.cpp
 

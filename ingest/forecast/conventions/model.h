@@ -15,11 +15,16 @@ enum class Vapour { kNone, kSpecific, kMixingRatio, kRelative };
 
 // The air of one time, [k][j][i] from the ground up.
 struct Air {
-  std::vector<float> pressure_Pa;         // or, the same for all columns,
-  std::vector<double> level_pressure_Pa;  // [k]
-  std::vector<float> temperature_K;       // empty: the standard atmosphere's of the pressure
-  bool is_theta = false;                  // potential temperature
-  std::vector<float> vapour;              // as `vapour_is` says
+  std::vector<float> pressure_Pa;           // or, the same for all columns,
+  std::vector<double> level_pressure_Pa;    // [k]
+  std::vector<float> temperature_K;         // or, the same for all columns,
+  std::vector<double> level_temperature_K;  // [k]; both empty: the standard atmosphere's
+  bool is_theta = false;                    // potential temperature
+  // Of the base state of models that have one: a field or, the same for all columns, [k]. Both
+  // empty: by pressure and temperature.
+  std::vector<float> density_kg_per_m3;
+  std::vector<double> level_density_kg_per_m3;
+  std::vector<float> vapour;  // as `vapour_is` says
   Vapour vapour_is = Vapour::kNone;
 
   struct State {
@@ -41,6 +46,8 @@ struct Model {
   std::function<std::vector<float>(const FileVariable&, std::size_t time)> field;  // [k][j][i]
   const FileVariable* cloud_fraction = nullptr;  // in [0, 1], or percent
   const FileVariable* droplet_number = nullptr;  // per kg or per m3, as its units say
+  const FileVariable *droplet_radius = nullptr, *ice_radius = nullptr;  // effective; a length
+  bool has_land_mask = false;
   std::function<std::shared_ptr<const HorizontalGrid>(std::size_t time)> grid;
   std::function<Air(std::size_t time)> air;  // empty where all water is per volume
   // [(j * nx + i) * (nz + 1) + k], rising. The air where it has been read, else null.

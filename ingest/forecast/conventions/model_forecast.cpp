@@ -8,7 +8,10 @@
 
 #include "core/error.h"
 #include "forecast/conventions/model.h"
+#include "forecast/conventions/particle_sizes.h"
+#include "forecast/conventions/vertical.h"
 #include "forecast/water/air.h"
+#include "forecast/water/assumed_water.h"
 #include "forecast/water/condensate.h"
 #include "units/constants.h"
 
@@ -140,16 +143,10 @@ CloudSetting ModelForecast::setting(std::size_t index, const HorizontalGrid& gri
   CloudSetting setting;
   if (const FileVariable* fraction = model_.cloud_fraction) {
     setting.fraction = model_.field(*fraction, index);
-    if (fraction->text("units") == "%")
-      for (float& value : setting.fraction) value *= 0.01f;
+    if (const UnitOf unit = unit_of(*fraction, kDimensionless); unit.fits && unit.factor != 1)
+      for (float& value : setting.fraction) value = float(double(value) * unit.factor);
   }
-  if (const FileVariable* number = model_.droplet_number) {
-    setting.number = model_.field(*number, index);
-    const std::string unit = number->text("units");
-    setting.number_per_kg = unit.find("kg") != std::string::npos;
-    if (unit == "cm-3" || unit == "1/cm3" || unit == "cm**-3")
-      for (float& value : setting.number) value *= 1e6f;
-  }
+  read_sizes(model_, index, setting);
   setting.water = ground_of(index).water;
   if (has_ice_)
     for (int j = 0; j < model_.ny; ++j)
@@ -203,12 +200,19 @@ Loaded ModelForecast::load(std::size_t time) const {
   if (has_ice_) columns.ice_extinction_per_m = columns.extinction_per_m;
   const CloudSetting cloud = setting(index, *model_.grid(index));
   std::vector<float> cloud_path(cells, 0.0f), rain_path(cells, 0.0f);
+  std::vector<char> empty(cells, 1);
   for (const WaterVariable& water : model_.water) {
     const bool is_cloud =
         water.species == Species::kCloudWater || water.species == Species::kCloudIce;
-    add_water(water, model_.field(*water.variable, index), air, cloud, columns,
-              is_cloud ? cloud_path : rain_path, result.statistics);
+    const std::vector<float> values =
+        water.from_fraction ? water_of_fraction(cloud.fraction, air, columns.interface_m, cells)
+                            : model_.field(*water.variable, index);
+    for (std::size_t n = 0; n < values.size(); ++n)
+      if (!std::isnan(values[n])) empty[n % cells] = 0;
+    add_water(water, values, air, cloud, columns, is_cloud ? cloud_path : rain_path,
+              result.statistics);
   }
+  if (std::ranges::find(empty, 1) != empty.end()) columns.without_data = std::move(empty);
   clear_off_planet(*model_.grid(index), columns);
   WaterStatistics& s = result.statistics;
   s.highest_cloud_kg_per_m2 = double(*std::ranges::max_element(cloud_path));
@@ -271,13 +275,22 @@ void ModelForecast::say(const WaterStatistics& s) {
         "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to "
         "86 m above it.");
   std::string names;
-  for (const WaterVariable& w : model_.water)
+  for (const WaterVariable& w : model_.water) {
     names += (names.empty() ? "" : ", ") + w.variable->name + " (" + name_of(w.species) +
-             (w.freezes_below_K > 0
+             (w.freezes_below_K > 0 && w.liquid_above_K <= w.freezes_below_K
                   ? text(", ice below %.0f degC", w.freezes_below_K - constants::kZeroCelsius_K)
-                  : std::string()) +
+              : w.freezes_below_K > 0 ? " and ice"
+                                      : std::string()) +
              ")";
+    if (std::string note = w.row ? untested(*model_.file, w.row->quantity, *w.variable) : "";
+        !note.empty())
+      model_.assumptions.push_back(std::move(note));
+  }
   facts.push_back("Water: " + names + ".");
+  if (const std::string wrote = model_of_file(*model_.file); !wrote.empty())
+    facts.push_back("The names are those of " + wrote + ".");
+  for (SaidOfSizes& said : said_of_sizes(model_, s))
+    model_.assumptions.push_back(std::move(said.how));
   facts.push_back(text("Cloud water of a column: up to %.3g kg/m2, mean %.3g kg/m2.",
                        s.highest_cloud_kg_per_m2, s.mean_cloud_kg_per_m2));
   if (s.highest_precipitation_kg_per_m2 > 0)
@@ -356,10 +369,11 @@ Air::State Air::at(std::size_t k, std::size_t n, std::size_t cells) const {
   State state{};
   const std::size_t at = k * cells + n;
   state.pressure_Pa = pressure_Pa.empty() ? level_pressure_Pa[k] : double(pressure_Pa[at]);
-  if (temperature_K.empty()) {
+  if (temperature_K.empty() && level_temperature_K.empty()) {
     state.temperature_K = standard_temperature_K(standard_geopotential_height_m(state.pressure_Pa));
   } else {
-    state.temperature_K = double(temperature_K[at]);
+    state.temperature_K =
+        temperature_K.empty() ? level_temperature_K[k] : double(temperature_K[at]);
     if (is_theta)
       state.temperature_K = temperature_of_theta_K(state.temperature_K, state.pressure_Pa);
   }
@@ -369,7 +383,11 @@ Air::State Air::at(std::size_t k, std::size_t n, std::size_t cells) const {
   if (vapour_is == Vapour::kRelative)
     q = specific_humidity(q, state.temperature_K, state.pressure_Pa);
   state.specific_humidity = q;
-  state.density_kg_per_m3 = moist_density_kg_per_m3(state.pressure_Pa, state.temperature_K, q);
+  state.density_kg_per_m3 =
+      !density_kg_per_m3.empty() ? double(density_kg_per_m3[at])
+      : !level_density_kg_per_m3.empty()
+          ? level_density_kg_per_m3[k]
+          : moist_density_kg_per_m3(state.pressure_Pa, state.temperature_K, q);
   state.dry_density_kg_per_m3 = state.density_kg_per_m3 * (1 - q);
   return state;
 }

@@ -2,57 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 
 #include "core/error.h"
+#include "units/constants.h"
 #include "units/parse_unit.h"
 
 namespace nepho::forecast {
-namespace names {
-
-const VariableNames kTemperature = {{"air_temperature", "air_temperature_at_full_level_center"},
-                                    {"t", "ta", "temp", "temperature", "T_abs", "tk", "TABS"}};
-const VariableNames kPressure = {{"air_pressure", "air_pressure_at_full_level_center"},
-                                 {"pres", "p", "pfull", "pressure", "pa"}};
-const VariableNames kSurfacePressure = {
-    {"surface_air_pressure"}, {"ps", "psfc", "sp", "pressfc", "surface_pressure", "psurf"}};
-const VariableNames kLogSurfacePressure = {
-    {"logarithm_of_surface_pressure", "logarithm_of_surface_air_pressure"},
-    {"lnsp", "lsp", "lnps"}};
-const VariableNames kSpecificHumidity = {
-    {"specific_humidity", "specific_humidity_at_full_level_center"},
-    {"q", "qv", "hus", "spfh", "huss", "shum"}};
-const VariableNames kVapourMixingRatio = {{"humidity_mixing_ratio"}, {"qvapor", "mixr", "rv"}};
-const VariableNames kRelativeHumidity = {{"relative_humidity"}, {"r", "rh", "hur", "relhum"}};
-const VariableNames kCloudFraction = {
-    {"cloud_area_fraction_in_atmosphere_layer", "clc"},
-    {"cldfra", "cc", "clc", "cl", "tca", "cloud_fraction", "ccov", "clct"}};
-const VariableNames kDropletNumber = {
-    {"number_concentration_of_cloud_liquid_water_particles_in_air", "qnc"},
-    {"qnc", "qncloud", "qndrop", "nc"}};
-const VariableNames kTerrain = {{"surface_altitude", "surface_height", "height_above_sea_level"},
-                                {"hgt", "orog", "orography", "topography_c", "hsurf", "zs",
-                                 "terrain", "topo", "topography", "phis_height"}};
-const VariableNames kSurfaceGeopotential = {{"surface_geopotential"},
-                                            {"phis", "fis", "z", "z_surf", "geosp"}};
-const VariableNames kLandFraction = {{"land_area_fraction", "land_binary_mask"},
-                                     {"landmask", "lsm", "fr_land", "land", "sftlf", "landfrac"}};
-const VariableNames kHalfLevelHeight = {
-    {"geometric_height_at_half_level_center", "geometric_height_at_half_level"},
-    {"z_ifc", "hhl", "zhalf", "z_w", "height_interface"}};
-const VariableNames kFullLevelHeight = {
-    {"altitude", "geometric_height_at_full_level_center", "height_above_mean_sea_level",
-     "height_above_geopotential_datum", "height"},
-    {"z_mc", "height", "zfull", "altitude", "zg_geometric", "hfl", "z3d", "height_full"}};
-const VariableNames kGeopotentialHeight = {{"geopotential_height"},
-                                           {"gh", "zg", "z3", "hgt", "geopotential_height"}};
-const VariableNames kGeopotential = {{"geopotential"}, {"z", "phi", "geopotential", "fi"}};
-const VariableNames kLatitude = {{"latitude"},
-                                 {"lat", "latitude", "xlat", "nav_lat", "tlat", "clat", "lats"}};
-const VariableNames kLongitude = {{"longitude"},
-                                  {"lon", "longitude", "xlong", "nav_lon", "tlon", "clon", "lons"}};
-
-}  // namespace names
-
 namespace {
 
 std::string lower(std::string text) {
@@ -60,103 +16,116 @@ std::string lower(std::string text) {
   return text;
 }
 
-// One way in which a kind of water is written. Rows of a kind are tried in order; within a row, all
-// variables of `names` add up (large-scale and convective parts).
-struct WaterNames {
-  Species species;
-  std::vector<std::string> standard_names, names;
-  Basis basis;  // of a ratio; contents per volume tell themselves by their unit
-};
-
-const std::vector<WaterNames>& water_table() {
-  using enum Species;
-  static const std::vector<WaterNames> table = {
-      {kCloudWater,
-       {"mass_fraction_of_cloud_liquid_water_in_air",
-        "mass_fraction_of_stratiform_cloud_liquid_water_in_air"},
-       {},
-       Basis::kMoistAir},
-      {kCloudWater,
-       {"cloud_liquid_water_mixing_ratio", "cloud_water_mixing_ratio"},
-       {},
-       Basis::kDryAir},
-      {kCloudWater, {"mass_concentration_of_cloud_liquid_water_in_air"}, {}, Basis::kVolume},
-      {kCloudWater, {}, {"qcloud"}, Basis::kDryAir},
-      {kCloudWater, {}, {"clwmr"}, Basis::kDryAir},
-      {kCloudWater, {}, {"clw"}, Basis::kMoistAir},
-      {kCloudWater, {}, {"clwc"}, Basis::kMoistAir},
-      {kCloudWater, {}, {"specific_cloud_liquid_water_content"}, Basis::kMoistAir},
-      {kCloudWater, {}, {"qc"}, Basis::kMoistAir},
-      {kCloudWater, {}, {"cldliq"}, Basis::kMoistAir},
-      {kCloudWater, {}, {"mr_lsliq", "mr_ccliq"}, Basis::kMoistAir},
-      {kCloudWater, {}, {"cloud_water_mixing_ratio"}, Basis::kDryAir},
-      {kCloudWater, {}, {"cloud_water"}, Basis::kMoistAir},
-      {kCloudWater, {}, {"ql"}, Basis::kMoistAir},
-      {kCloudWater, {}, {"lwc"}, Basis::kVolume},
-      {kCloudWater, {"mass_fraction_of_cloud_condensed_water_in_air"}, {}, Basis::kMoistAir},
-      {kCloudIce,
-       {"mass_fraction_of_cloud_ice_in_air", "mass_fraction_of_stratiform_cloud_ice_in_air"},
-       {},
-       Basis::kMoistAir},
-      {kCloudIce, {"cloud_ice_mixing_ratio"}, {}, Basis::kDryAir},
-      {kCloudIce, {"mass_concentration_of_cloud_ice_in_air"}, {}, Basis::kVolume},
-      {kCloudIce, {}, {"qice"}, Basis::kDryAir},
-      {kCloudIce, {}, {"icmr"}, Basis::kDryAir},
-      {kCloudIce, {}, {"cli"}, Basis::kMoistAir},
-      {kCloudIce, {}, {"ciwc"}, Basis::kMoistAir},
-      {kCloudIce, {}, {"specific_cloud_ice_water_content"}, Basis::kMoistAir},
-      {kCloudIce, {}, {"qi"}, Basis::kMoistAir},
-      {kCloudIce, {}, {"cldice"}, Basis::kMoistAir},
-      {kCloudIce, {}, {"mr_lsice", "mr_ccice"}, Basis::kMoistAir},
-      {kCloudIce, {}, {"iwc"}, Basis::kVolume},
-      {kRain, {"mass_fraction_of_rain_in_air"}, {}, Basis::kMoistAir},
-      {kRain, {}, {"qrain"}, Basis::kDryAir},
-      {kRain, {}, {"rwmr"}, Basis::kDryAir},
-      {kRain, {}, {"crwc"}, Basis::kMoistAir},
-      {kRain, {}, {"qr"}, Basis::kMoistAir},
-      {kSnow, {"mass_fraction_of_snow_in_air"}, {}, Basis::kMoistAir},
-      {kSnow, {}, {"qsnow"}, Basis::kDryAir},
-      {kSnow, {}, {"snmr"}, Basis::kDryAir},
-      {kSnow, {}, {"cswc"}, Basis::kMoistAir},
-      {kSnow, {}, {"qs"}, Basis::kMoistAir},
-      {kGraupel, {"mass_fraction_of_graupel_in_air"}, {}, Basis::kMoistAir},
-      {kGraupel, {}, {"qgraup"}, Basis::kDryAir},
-      {kGraupel, {}, {"grle"}, Basis::kDryAir},
-      {kGraupel, {}, {"qg"}, Basis::kMoistAir}};
-  return table;
+bool by_standard_name(const NameRow& row, const FileVariable& variable) {
+  return *row.standard_name && lower(variable.text("standard_name")) == row.standard_name;
 }
 
-bool answers(const FileVariable& variable, const std::vector<std::string>& standard_names,
-             const std::vector<std::string>& names) {
-  const std::string standard = lower(variable.text("standard_name")), name = lower(variable.name);
-  return std::ranges::find(standard_names, standard) != standard_names.end() ||
-         std::ranges::find(names, name, lower) != names.end();
+bool by_name(const NameRow& row, const FileVariable& variable) {
+  return *row.name && lower(variable.name) == row.name;
+}
+
+bool answers(const NameRow& row, const FileVariable& variable) {
+  return by_standard_name(row, variable) || by_name(row, variable);
+}
+
+Species species_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kRain:
+      return Species::kRain;
+    case Quantity::kCloudIce:
+      return Species::kCloudIce;
+    case Quantity::kSnow:
+      return Species::kSnow;
+    case Quantity::kGraupel:
+      return Species::kGraupel;
+    default:
+      return Species::kCloudWater;
+  }
+}
+
+// The rows that can hold for a file.
+class Names {
+ public:
+  explicit Names(const DataFile& file) : file_(file), model_(model_of_file(file)) {}
+
+  bool is_own(const NameRow& row) const { return model_ == row.model; }
+  bool holds(const NameRow& row) const { return !row.only_there || is_own(row); }
+
+  // A user's word for a variable, and a model's name that means other things elsewhere, leave it no
+  // other meaning.
+  bool may_be(const FileVariable& variable, Quantity quantity) const {
+    if (const std::string word = variable.text(kQuantityAttribute); !word.empty())
+      return word == word_of(quantity);
+    for (const NameRow& row : name_table())
+      if (row.only_there && is_own(row) && by_name(row, variable)) return row.quantity == quantity;
+    return true;
+  }
+
+  // The table's rows of a quantity: those that hold only in files of this model, those by standard
+  // name, this model's, those of any model, other models'.
+  std::vector<const NameRow*> rows(Quantity quantity) const {
+    std::vector<const NameRow*> ordered;
+    const auto rank = [&](const NameRow& row) {
+      return row.only_there                        ? 0
+             : *row.standard_name                  ? 1
+             : is_own(row)                         ? 2
+             : row.model == std::string(kAnyModel) ? 3
+                                                   : 4;
+    };
+    for (const NameRow& row : name_table())
+      if (row.quantity == quantity && holds(row)) ordered.push_back(&row);
+    std::ranges::stable_sort(ordered, {}, [&](const NameRow* row) { return rank(*row); });
+    return ordered;
+  }
+
+  // In the order of a user's file.
+  std::vector<const FileVariable*> users(Quantity quantity) const {
+    std::vector<const FileVariable*> found;
+    for (const FileVariable& variable : file_.variables())
+      if (variable.text(kQuantityAttribute) == word_of(quantity)) found.push_back(&variable);
+    return found;
+  }
+
+ private:
+  const DataFile& file_;
+  std::string model_;
+};
+
+[[noreturn]] void refuse_units(const DataFile& file, const FileVariable& variable, const char* what,
+                               const std::string& found) {
+  throw Error({what, file.where(variable), "units such as kg kg-1, g/kg or g m-3", found,
+               "set the attribute `units`, for example with ncatted -a units," + variable.name +
+                   ",o,c,\"kg kg-1\", or say them in a file for --names: cloud_water " +
+                   variable.name + " units=kg/kg"});
 }
 
 // The factor to kg/kg, or to kg/m3 with Basis::kVolume.
-WaterVariable water_variable(const DataFile& file, const FileVariable& variable,
-                             const WaterNames& row) {
-  const std::string unit = variable.text("units");
-  const auto refuse = [&](const char* what, const std::string& found) {
-    throw Error({what, file.where(variable), "units such as kg kg-1, g/kg or g m-3", found,
-                 "set the attribute `units`, for example with ncatted -a units," + variable.name +
-                     ",o,c,\"kg kg-1\""});
-  };
-  if (unit.empty()) refuse("the variable has no units", "no attribute `units`");
+WaterVariable water_variable(const DataFile& file, const FileVariable& variable, Quantity quantity,
+                             const NameRow* row) {
+  const std::string unit = row && *row->units ? row->units : variable.text("units");
+  if (unit.empty())
+    refuse_units(file, variable, "the variable has no units", "no attribute `units`");
   Unit parsed;
   try {
     parsed = parse_unit(unit);
   } catch (const Error&) {
-    refuse("the variable's units are not known", "\"" + unit + "\"");
+    refuse_units(file, variable, "the variable's units are not known", "\"" + unit + "\"");
   }
-  WaterVariable result{row.species, &variable, row.basis, parsed.factor, 0};
+  WaterVariable result;
+  result.species = species_of(quantity);
+  result.variable = &variable;
+  result.basis = row ? row->basis : Basis::kMoistAir;
+  result.to_si = parsed.factor;
+  result.row = row;
+  const std::string per = variable.text(kPerAttribute);
+  if (!row && per == "dry_air") result.basis = Basis::kDryAir;
 #ifdef NEPHO_MUTANT_UNITS_1000
   result.to_si = 1;
 #endif
   if (parsed.dimension == kDensity) {
     result.basis = Basis::kVolume;
   } else if (parsed.dimension != kDimensionless) {
-    refuse("the variable's units are no water content", "\"" + unit + "\"");
+    refuse_units(file, variable, "the variable's units are no water content", "\"" + unit + "\"");
   } else if (result.basis == Basis::kVolume) {
     result.basis = Basis::kMoistAir;
   }
@@ -172,34 +141,87 @@ bool is_column(const FileVariable& variable) {
   }
 }
 
+// One kind of water: a user's variables, which add up; else the first row that has a variable, with
+// the other parts of it.
+void find_kind(const DataFile& file, const Names& names, Quantity quantity, const Accept& accept,
+               std::vector<WaterVariable>& found) {
+  const auto usable = [&](const FileVariable& variable) {
+    return variable.numeric && accept(variable) && !is_column(variable);
+  };
+  const std::size_t before = found.size();
+  for (const FileVariable* variable : names.users(quantity))
+    if (usable(*variable)) found.push_back(water_variable(file, *variable, quantity, nullptr));
+  if (found.size() > before) return;
+  const NameRow* first = nullptr;
+  for (const NameRow* row : names.rows(quantity)) {
+    if (first && !(first->part && row->part && row->model == first->model)) continue;
+    for (const FileVariable& variable : file.variables())
+      if (answers(*row, variable) && names.may_be(variable, quantity) && usable(variable)) {
+        found.push_back(water_variable(file, variable, quantity, row));
+        first = row;
+        break;
+      }
+  }
+}
+
 }  // namespace
 
-const FileVariable* find_named(const DataFile& file, const VariableNames& wanted,
-                               const std::function<bool(const FileVariable&)>& accept) {
-  for (const std::string& standard : wanted.standard_names)
+const FileVariable* find_named(const DataFile& file, Quantity wanted, const Accept& accept) {
+  const Names names(file);
+  for (const FileVariable* variable : names.users(wanted))
+    if (accept(*variable)) return variable;
+  for (const NameRow* row : names.rows(wanted))
     for (const FileVariable& variable : file.variables())
-      if (variable.text("standard_name") == standard && accept(variable)) return &variable;
-  for (const std::string& name : wanted.names)
+      if (answers(*row, variable) && names.may_be(variable, wanted) && accept(variable))
+        return &variable;
+  return nullptr;
+}
+
+const FileVariable* find_named(const DataFile& file, const std::vector<std::string>& names,
+                               const Accept& accept) {
+  for (const std::string& name : names)
     for (const FileVariable& variable : file.variables())
       if (lower(variable.name) == lower(name) && accept(variable)) return &variable;
   return nullptr;
 }
 
-std::vector<WaterVariable> find_water(const DataFile& file,
-                                      const std::function<bool(const FileVariable&)>& accept) {
+const NameRow* row_of(const DataFile& file, Quantity quantity, const FileVariable& variable) {
+  const Names names(file);
+  if (!variable.text(kQuantityAttribute).empty()) return nullptr;
+  for (const NameRow* row : names.rows(quantity))
+    if (answers(*row, variable) && names.may_be(variable, quantity)) return row;
+  return nullptr;
+}
+
+std::vector<WaterVariable> find_water(const DataFile& file, const Accept& accept) {
+  const Names names(file);
   std::vector<WaterVariable> found;
-  for (const WaterNames& row : water_table()) {
-    const bool known = std::ranges::any_of(
-        found, [&](const WaterVariable& w) { return w.species == row.species; });
-    if (known) continue;
-    for (const FileVariable& variable : file.variables())
-      if (variable.numeric && answers(variable, row.standard_names, row.names) &&
-          accept(variable) && !is_column(variable)) {
-        found.push_back(water_variable(file, variable, row));
-        if (row.names.empty()) break;  // one of a standard name's variants
-      }
-  }
+  for (const Quantity quantity : {Quantity::kCloudWater, Quantity::kCloudIce, Quantity::kRain,
+                                  Quantity::kSnow, Quantity::kGraupel})
+    find_kind(file, names, quantity, accept, found);
   return found;
+}
+
+void divide_phases(std::vector<WaterVariable>& water, std::vector<std::string>& assumptions) {
+  const auto has = [&](Species species) {
+    return std::ranges::any_of(water, [&](const WaterVariable& w) { return w.species == species; });
+  };
+  const bool has_ice = has(Species::kCloudIce), has_snow = has(Species::kSnow);
+  for (WaterVariable& w : water) {
+    if (!w.row || w.row->all_ice_K == 0) continue;
+    if (w.species == Species::kCloudWater ? has_ice : has_snow) continue;
+    w.freezes_below_K = w.row->all_ice_K;
+    w.liquid_above_K = w.row->all_liquid_K;
+    char range[80];
+    const double ice = w.freezes_below_K - constants::kZeroCelsius_K;
+    const double liquid = w.liquid_above_K - constants::kZeroCelsius_K;
+    if (ice == liquid)
+      std::snprintf(range, sizeof range, "ice below %.0f degC is assumed.", ice);
+    else
+      std::snprintf(range, sizeof range,
+                    "ice from %.0f degC down, all of it at %.0f degC, is assumed.", liquid, ice);
+    assumptions.push_back(w.variable->name + " holds liquid and ice: " + range);
+  }
 }
 
 namespace {
@@ -207,9 +229,12 @@ namespace {
 // Short enough for one message: standard names are told by their pattern.
 std::string known_water_names() {
   std::string text;
-  for (const WaterNames& row : water_table()) {
-    if (row.species != Species::kCloudWater && row.species != Species::kCloudIce) continue;
-    for (const std::string& name : row.names) text += (text.empty() ? "" : ", ") + name;
+  std::vector<std::string> said;
+  for (const NameRow& row : name_table()) {
+    if (row.quantity != Quantity::kCloudWater && row.quantity != Quantity::kCloudIce) continue;
+    if (!*row.name || row.only_there || std::ranges::find(said, row.name) != said.end()) continue;
+    said.emplace_back(row.name);
+    text += (text.empty() ? "" : ", ") + said.back();
   }
   return text + ", or a standard_name mass_fraction_of_cloud_liquid_water_in_air or its like";
 }
@@ -217,11 +242,6 @@ std::string known_water_names() {
 constexpr std::size_t kMostNames = 12;  // of a file with hundreds of variables
 
 }  // namespace
-
-bool is_whole_condensate(const WaterVariable& water) {
-  return lower(water.variable->name) == "clwmr" ||
-         water.variable->text("standard_name") == "mass_fraction_of_cloud_condensed_water_in_air";
-}
 
 void require_water(const DataFile& file, const std::vector<WaterVariable>& water) {
   if (!water.empty()) return;
@@ -234,7 +254,21 @@ void require_water(const DataFile& file, const std::vector<WaterVariable>& water
   throw Error({"there is no cloud water on levels in this file", file.path(),
                "one of " + known_water_names(),
                found.empty() ? "no variable of three dimensions" : found,
-               "vertical sums (kg m-2) and satellite pictures are no forecast"});
+               "vertical sums (kg m-2) and satellite pictures are no forecast; names of another "
+               "model can be told in a file for --names"});
+}
+
+std::string untested(const DataFile& file, Quantity quantity, const FileVariable& variable) {
+  if (const std::string row = variable.text(kUntestedAttribute); !row.empty())
+    return variable.name + " is read as " + row + ": untested, no file stands behind that row.";
+  if (!variable.text(kRowAttribute).empty()) return "";
+  const NameRow* row = row_of(file, quantity, variable);
+  if (!row || row->evidence != Evidence::kNone) return "";
+  const std::string how = by_standard_name(*row, variable)
+                              ? "its standard_name"
+                              : "the name that " + std::string(row->model) + " gives it";
+  return variable.name + " is read as " + word_of(quantity) + " by " + how +
+         ": untested, no file stands behind that row.";
 }
 
 }  // namespace nepho::forecast

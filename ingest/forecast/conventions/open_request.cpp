@@ -13,6 +13,7 @@ OpenRequest open_request(const SourceRequest& request, Parameters& parameters, c
   open.files.assign(request.files, request.files + request.file_count);
   open.force = parameters.integer("force", 0, 0, 1) == 1;
   open.grid_file = parameters.word("grid", "");
+  open.names_file = parameters.word("names", "");
   if (const std::string region = parameters.word("region", ""); !region.empty())
     open.region = parse_region(region, parameters.where("region"));
   return open;

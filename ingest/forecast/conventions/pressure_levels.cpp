@@ -16,11 +16,12 @@ struct Hydrostatic {
   std::shared_ptr<Levels> levels;
   const FileVariable* surface_pressure = nullptr;
   double surface_factor = 1;
-  std::optional<HybridPressure> hybrid;  // pressures of the interfaces
+  std::optional<HybridPressure> hybrid;  // pressures of the interfaces, or
+  PressureField interface_Pa;            // likewise, [k][n]
 
   std::vector<float> interfaces_m(std::size_t time, const Air* known) const;
   void place_interfaces(std::span<const double> p, std::span<const double> tv,
-                        std::span<const double> z, double surface_Pa,
+                        std::span<const double> z, std::span<const double> at_Pa,
                         std::span<float> interface_m) const;
 };
 
@@ -28,12 +29,13 @@ std::vector<float> Hydrostatic::interfaces_m(std::size_t time, const Air* known)
   const Air own = known ? Air{} : levels->request.air(time);
   const Air& air = known ? *known : own;
   const std::size_t cells = levels->cells(), nz = std::size_t(levels->nz());
-  std::vector<float> surface, formula_surface;
+  std::vector<float> surface, formula_surface, walls;
+  if (interface_Pa) walls = interface_Pa(time);
   if (surface_pressure) surface = levels->reader().surface(*surface_pressure, time);
   if (hybrid && hybrid->surface) formula_surface = levels->reader().surface(*hybrid->surface, time);
   const std::vector<double> ground = levels->terrain_m(time);
   std::vector<float> result(cells * (nz + 1));
-  std::vector<double> p(nz), tv(nz), z(nz);
+  std::vector<double> p(nz), tv(nz), z(nz), at_Pa(nz + 1);
   bool any = false;
   for (std::size_t n = 0; n < cells; ++n) {
     for (std::size_t k = 0; k < nz; ++k) {
@@ -51,7 +53,16 @@ std::vector<float> Hydrostatic::interfaces_m(std::size_t time, const Air* known)
     const bool whole = std::ranges::all_of(z, [](double h) { return std::isfinite(h); });
     any |= whole;
     if (hybrid && !hybrid->interface_a_Pa.empty() && whole) {
-      place_interfaces(p, tv, z, formula_Pa, interfaces);
+      for (std::size_t k = 0; k <= nz; ++k) {
+        const double b = hybrid->interface_b[k];
+        at_Pa[k] = hybrid->interface_a_Pa[k] + (b == 0 ? 0 : b * formula_Pa);
+      }
+      place_interfaces(p, tv, z, at_Pa, interfaces);
+      continue;
+    }
+    if (!walls.empty() && whole) {
+      for (std::size_t k = 0; k <= nz; ++k) at_Pa[k] = double(walls[k * cells + n]);
+      place_interfaces(p, tv, z, at_Pa, interfaces);
       continue;
     }
     for (double& height : z) height = height_of_geopotential_height_m(height);
@@ -64,21 +75,22 @@ std::vector<float> Hydrostatic::interfaces_m(std::size_t time, const Air* known)
 
 // A top of the model without pressure is as far above its level as the interface below it.
 void Hydrostatic::place_interfaces(std::span<const double> p, std::span<const double> tv,
-                                   std::span<const double> z, double surface_Pa,
+                                   std::span<const double> z, std::span<const double> at_Pa,
                                    std::span<float> interface_m) const {
   double below = 0;
   for (std::size_t k = 0; k < interface_m.size(); ++k) {
-    const double b = hybrid->interface_b[k];
-    const double at_Pa = hybrid->interface_a_Pa[k] + (b == 0 ? 0 : b * surface_Pa);
-    const bool has_pressure = at_Pa > 0.1 * p[std::min(k, p.size() - 1)] || k == 0;
-    const double h = has_pressure ? height_in_layers_m(p, tv, z, at_Pa) : 2 * z[k - 1] - below;
+    const bool has_pressure = at_Pa[k] > 0.1 * p[std::min(k, p.size() - 1)] || k == 0;
+    const double h = has_pressure ? height_in_layers_m(p, tv, z, at_Pa[k]) : 2 * z[k - 1] - below;
     below = h;
     interface_m[k] = float(height_of_geopotential_height_m(h));
   }
 }
 
+}  // namespace
+
 void set_hydrostatic(const VerticalRequest& request, Vertical& vertical,
-                     const FileVariable& variable, std::optional<HybridPressure> hybrid) {
+                     const FileVariable& variable, std::optional<HybridPressure> hybrid,
+                     PressureField interface_Pa) {
   auto column = std::make_shared<Hydrostatic>();
   column->levels = levels_of(request, variable, request.z);
   const FieldReader& reader = *request.reader;
@@ -97,15 +109,14 @@ void set_hydrostatic(const VerticalRequest& request, Vertical& vertical,
     vertical.assumptions.push_back(
         "There is no temperature: heights and densities are the standard atmosphere's.");
   vertical.heights_change = true;
-  vertical.has_interfaces = hybrid && !hybrid->interface_a_Pa.empty();
+  vertical.has_interfaces = interface_Pa || (hybrid && !hybrid->interface_a_Pa.empty());
+  column->interface_Pa = std::move(interface_Pa);
   vertical.how = hybrid && !hybrid->how.empty() ? hybrid->how : "hydrostatic from " + variable.name;
   column->hybrid = std::move(hybrid);
   vertical.interfaces_m = [column](std::size_t time, const Air* air) {
     return column->interfaces_m(time, air);
   };
 }
-
-}  // namespace
 
 PressureLevels pressure_levels(const DataFile& file, int z) {
   PressureLevels levels;
@@ -139,6 +150,12 @@ bool by_pressure_levels(const VerticalRequest& request, Vertical& vertical) {
   }
   set_hydrostatic(request, vertical, *file.find(file.name(request.z)), std::move(bounds));
   vertical.from_top = levels.from_top;
+  const FileVariable& axis = *file.find(file.name(request.z));
+  if (axis.name == "pfull" || axis.text("long_name").starts_with("ref "))
+    vertical.assumptions.push_back(
+        axis.name +
+        " holds reference pressures of hybrid levels, taken as they are: without ak and "
+        "bk, delz or dpres clouds over high ground stand too low.");
   return true;
 }
 

@@ -66,8 +66,8 @@ Centres centres_along(const DataFile& file, std::size_t size) {
   const auto along = [&](const FileVariable& v) {
     return v.numeric && v.dimensions.size() == 1 && file.size(v.dimensions[0]) == size;
   };
-  static const VariableNames kLat = {{}, {"clat", "latCell", "lat", "latitude", "lat_cell"}};
-  static const VariableNames kLon = {{}, {"clon", "lonCell", "lon", "longitude", "lon_cell"}};
+  static const std::vector<std::string> kLat = {"clat", "latCell", "lat", "latitude", "lat_cell"};
+  static const std::vector<std::string> kLon = {"clon", "lonCell", "lon", "longitude", "lon_cell"};
   Centres centres{find_named(file, kLat, along), find_named(file, kLon, along)};
   if (!centres)
     centres = {find_named(file, names::kLatitude, along),
@@ -165,6 +165,23 @@ std::vector<glm::dvec2> middles(const CellPolygons& polygons) {
   return centres;
 }
 
+// Stations, soundings and ways of aircraft (CF 1.11, chapter 9) are no cells, whatever is half way
+// between them.
+void refuse_points(const DataFile& file, const FileVariable& water, bool by_grid_file) {
+#ifndef NEPHO_MUTANT_POINTS
+  std::string kind = file.text("featureType");
+  if (kind.empty()) kind = file.text("cdm_data_type");
+  if (kind.empty() || kind == "Grid" || kind == "grid") return;
+  throw Error({"the data are unconnected points", file.where(water), "cells of a grid",
+               "featureType \"" + kind + "\"",
+               by_grid_file
+                   ? "a grid file with the corners of the cells (clat_vertices, "
+                     "verticesOnCell, or a mesh_topology)"
+                   : "--grid FILE with the corners of the cells, or interpolate the points "
+                     "to a grid first"});
+#endif
+}
+
 void check_polygons(const CellPolygons& polygons, const std::string& where) {
   std::size_t bad = 0;
   for (std::size_t cell = 0; cell + 1 < polygons.first.size(); ++cell)
@@ -193,6 +210,7 @@ std::unique_ptr<HorizontalGrid> unstructured_grid(const DataFile& file, const Da
     std::vector<glm::dvec2> places =
         centres ? paired(degrees(*from, *centres.latitude), degrees(*from, *centres.longitude))
                 : middles(*polygons);
+    if (!polygons) refuse_points(file, water, from == grid_file);
     if (!polygons) {
       assumptions.push_back("The cells have no corners: each ends half way to its neighbours (" +
                             centres.latitude->name + ", " + centres.longitude->name + ").");

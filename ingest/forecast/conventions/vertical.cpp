@@ -22,25 +22,34 @@ UnitOf unit_of(const FileVariable& variable, const Dimension& wanted) {
 }
 
 Vertical find_vertical(const VerticalRequest& request) {
-  static constexpr std::array<Way*, 9> kWays = {
-      by_half_levels,     by_level_heights,  by_geopotential_height,
-      by_geopotential,    by_hybrid_heights, by_hybrid_pressure,
+  static constexpr std::array<Way*, 11> kWays = {
+      by_half_levels,     by_level_heights,  by_geopotential_height, by_geopotential,
+      by_thickness,       by_hybrid_heights, by_hybrid_pressure,     by_pressure_thickness,
       by_pressure_levels, by_height_axis,    by_pressure_field};
   Vertical vertical;
   const DataFile& file = *request.reader->file;
   // Refused here whatever else there is: an axis out of order.
   const auto hybrid = hybrid_pressure(request, true);
-  const PressureLevels levels = hybrid ? PressureLevels{} : pressure_levels(file, request.z);
+  PressureField by_layers;
+  if (!hybrid) by_layers = pressure_of_thickness(request).level_Pa;
+  const PressureLevels levels =
+      hybrid || by_layers ? PressureLevels{} : pressure_levels(file, request.z);
   for (Way* const way : kWays)
     if (way(request, vertical)) {
       vertical.level_pressure_Pa = levels.pressure_Pa;
       if (hybrid && !vertical.pressure_Pa) vertical.pressure_Pa = hybrid_field(request, *hybrid);
+      if (!vertical.pressure_Pa) vertical.pressure_Pa = by_layers;
       if (!levels.pressure_Pa.empty() && levels.from_top != vertical.from_top)
         refuse_levels(file.path() + " [" + file.name(request.z) + "]",
                       "pressures in another order than the heights (" + vertical.how + ")");
       if (file.size(request.z) < 2 && !vertical.has_interfaces)
-        throw Error({"one level has no thickness", file.path(), "at least two levels",
-                     file.name(request.z) + " of size 1", ""});
+        throw Error(
+            {"one level has no thickness", file.path(), "at least two levels",
+             file.name(request.z) + " of size 1",
+             "give the level bounds, half levels or a thickness, or keep a level beside it"});
+      if (way == by_thickness && !levels.pressure_Pa.empty())
+        vertical.assumptions.push_back("Pressures of the axis " + file.name(request.z) +
+                                       " are taken for densities: they are a standard surface's.");
       vertical.facts.push_back("Heights: " + vertical.how + ".");
       return vertical;
     }

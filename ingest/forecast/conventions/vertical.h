@@ -13,8 +13,9 @@ namespace nepho::forecast {
 
 // Where the levels of a CF-like file stand. The ways that are known are the rows of a table in
 // vertical.cpp, tried in order: heights of half levels; heights of levels; geopotential height;
-// geopotential; heights by a formula of the ground's; pressures, by a formula of the surface's, one
-// per level or a field, with temperature, hydrostatic; one height per level.
+// geopotential; thickness of layers; heights by a formula of the ground's; pressures, by a formula
+// of the surface's, one per level, a field or thickness of layers, with temperature, hydrostatic;
+// one height per level.
 struct Vertical {
   bool from_top = false;                   // the file's first level is the highest
   std::vector<double> level_pressure_Pa;   // from the ground up, where levels are pressures
@@ -50,6 +51,16 @@ struct PressureLevels {
   bool from_top = false;
 };
 PressureLevels pressure_levels(const DataFile& file, int z);
+
+// [k][j][i] of a time, from the ground up.
+using PressureField = std::function<std::vector<float>(std::size_t time)>;
+
+// Pressures of levels, and of the nz + 1 interfaces between them, of the layers' thickness in
+// pressure (`dpres` of FV3) below the surface's; empty: not known.
+struct LayerPressures {
+  PressureField level_Pa, interface_Pa;
+};
+LayerPressures pressure_of_thickness(const VerticalRequest& request);
 
 inline constexpr Dimension kGeopotentialUnit{.m = 2, .s = -2};
 

@@ -12,6 +12,7 @@
 #include "forecast/conventions/horizontal.h"
 #include "forecast/conventions/levels.h"
 #include "forecast/conventions/model.h"
+#include "forecast/conventions/particle_sizes.h"
 #include "forecast/conventions/wrf_grid.h"
 #include "forecast/files/file_time.h"
 #include "forecast/water/air.h"
@@ -228,16 +229,16 @@ void WrfFile::find_condensate(Model& model) const {
   const bool has_ice = std::ranges::any_of(
       model.water, [](const WaterVariable& water) { return is_ice(water.species); });
   if (file_->number("MP_PHYSICS") == kWsm3 && !has_ice) {
-    for (WaterVariable& water : model.water) water.freezes_below_K = constants::kZeroCelsius_K;
+    for (WaterVariable& water : model.water)
+      water.freezes_below_K = water.liquid_above_K = constants::kZeroCelsius_K;
     model.facts.push_back(
         "WSM3 (MP_PHYSICS 3) has one condensate: QCLOUD is ice and QRAIN snow below 0 degC.");
   }
-  const auto field = [&](const char* name) {
-    const FileVariable* variable = file_->find(name);
-    return variable && reader_.is_field(*variable, z_) ? variable : nullptr;
-  };
-  model.cloud_fraction = field("CLDFRA");
-  model.droplet_number = field("QNCLOUD");
+  const auto accept = [&](const FileVariable& v) { return reader_.is_field(v, z_); };
+  model.cloud_fraction = find_named(*file_, names::kCloudFraction, accept);
+  find_sizes(accept, model);
+  const FileVariable* land = file_->find("LANDMASK");
+  model.has_land_mask = land && reader_.is_surface(*land);
 }
 
 Model WrfFile::model(const std::shared_ptr<WrfFile>& self, const std::optional<Region>& region) {
@@ -250,7 +251,9 @@ Model WrfFile::model(const std::shared_ptr<WrfFile>& self, const std::optional<R
   for (const char* name : {"PH", "PHB", "P", "PB", "T"}) self->need(name);
   model.utc_ns = self->times_ns(model);
   const auto cells = self->grid(0);
-  if (!self->grids_.at(0).placed)
+  const WrfGrid& first = self->grids_.at(0);
+  model.assumptions = first.assumptions;
+  if (!first.placed)
     model.assumptions.push_back(kNoPlace);
   else if (std::string fact = compare_with_map(file, *cells); !fact.empty())
     model.facts.push_back(std::move(fact));

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "forecast/conventions/horizontal.h"
+#include "forecast/conventions/line_grid.h"
 
 namespace nepho::forecast {
 namespace {
@@ -58,19 +59,41 @@ std::vector<double> steps(int count, double step_m, double middle_m) {
   return centres;
 }
 
+// One row, column or cell of a domain: on its map from the first place on, as CEN_LAT is the whole
+// domain's. None: no such file, or without a map.
+std::optional<WrfGrid> line_of_cells(const FieldReader& whole, const std::vector<double>& lat,
+                                     const std::vector<double>& lon) {
+  const auto dx = whole.file->number("DX"), dy = whole.file->number("DY");
+  const auto map = projection_of(*whole.file);
+  if ((whole.nx > 1 && whole.ny > 1) || !map || !dx || !dy || !(*dx > 0 && *dy > 0)) return {};
+  const glm::dvec2 first = map->map_m({lat.front(), lon.front()});
+  const auto axis = [](int count, double step, double from) {
+    std::vector<double> edges;
+    for (int n = 0; n <= count; ++n) edges.push_back(from + step * (n - 0.5));
+    return edges;
+  };
+  return WrfGrid{map_edges_grid(axis(whole.nx, *dx, first.x), axis(whole.ny, *dy, first.y), *map)};
+}
+
 }  // namespace
 
 WrfGrid wrf_grid(const FieldReader& whole, std::size_t time) {
   const DataFile& file = *whole.file;
   const FileVariable *latitude = file.find("XLAT"), *longitude = file.find("XLONG");
-  if (latitude && longitude && whole.nx > 1 && whole.ny > 1) {
+  if (latitude && longitude) {
     const auto doubles = [&](const FileVariable& variable) {
       const std::vector<float> values = whole.surface(variable, time);
       return std::vector<double>(values.begin(), values.end());
     };
     const std::vector<double> lat = doubles(*latitude), lon = doubles(*longitude);
-    if (!is_one_place(lat, lon))
-      return {points_grid(whole.nx, whole.ny, lat, lon, file.path() + " [XLAT, XLONG]")};
+    if (const auto row = line_of_cells(whole, lat, lon)) return *row;
+    const std::string where = file.path() + " [XLAT, XLONG]";
+    if (!is_one_place(lat, lon) && (whole.nx == 1 || whole.ny == 1)) {
+      WrfGrid row;
+      row.cells = line_grid(whole.nx, whole.ny, lat, lon, where, row.assumptions);
+      return row;
+    }
+    if (!is_one_place(lat, lon)) return {points_grid(whole.nx, whole.ny, lat, lon, where)};
   }
   const auto map = projection_of(file);
   const auto lat = file.number("CEN_LAT"), lon = file.number("CEN_LON");

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "forecast/conventions/field_reader.h"
 #include "forecast/forecast.h"
@@ -14,6 +15,7 @@ namespace nepho::forecast {
 struct WrfGrid {
   std::shared_ptr<const HorizontalGrid> cells;
   bool placed = true;  // false: the plane
+  std::vector<std::string> assumptions = {};
 };
 
 // Of one time of the file; `whole` reads all its columns. Throws Error where there is none of

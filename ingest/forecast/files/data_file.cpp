@@ -49,4 +49,10 @@ std::vector<double> DataFile::read_all(const FileVariable& variable) const {
   return read_doubles(variable, std::vector<std::size_t>(count.size(), 0), count);
 }
 
+void DataFile::set_attribute(int variable, const std::string& name, const std::string& text) {
+  std::vector<FileAttribute>& all = variables_[std::size_t(variable)].attributes;
+  std::erase_if(all, [&](const FileAttribute& a) { return a.name == name; });
+  all.push_back({name, text, {}});
+}
+
 }  // namespace nepho::forecast

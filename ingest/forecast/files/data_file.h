@@ -17,6 +17,7 @@ namespace nepho::forecast {
 struct FileDimension {
   std::string name;
   std::size_t size = 0;
+  char axis = 0;  // T, Z, Y or X where a user says so
 };
 
 struct FileAttribute {
@@ -50,6 +51,7 @@ class DataFile {
   // Global attributes.
   std::string text(const std::string& name) const { return global_.text(name); }
   std::optional<double> number(const std::string& name) const { return global_.number(name); }
+  const FileAttribute* attribute(const std::string& name) const { return global_.attribute(name); }
 
   // What the format's reader took for granted, and what it left out: for `info`.
   const std::vector<std::string>& assumptions() const { return assumptions_; }
@@ -79,6 +81,14 @@ class DataFile {
   virtual VariableBytes bytes_read(const FileVariable& variable) const = 0;
 
   std::vector<double> read_all(const FileVariable& variable) const;
+
+  // Before the file is shared: what is said of a variable from elsewhere, in place of what it says.
+  void set_attribute(int variable, const std::string& name, const std::string& text);
+  void rename_dimension(int dimension, const std::string& name) {
+    dimensions_[std::size_t(dimension)].name = name;
+  }
+  void set_axis(int dimension, char axis) { dimensions_[std::size_t(dimension)].axis = axis; }
+  void add_fact(std::string fact) { facts_.push_back(std::move(fact)); }
 
  protected:
   explicit DataFile(std::string path) : path_(std::move(path)) {}

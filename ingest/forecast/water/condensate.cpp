@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "forecast/water/air.h"
 #include "forecast/water/water.h"
@@ -11,6 +13,8 @@ namespace {
 
 // Grid mean to in-cloud water, for radii only; the smallest fraction that is believed.
 constexpr double kSmallestFraction = 1e-3;
+// Effective radii that a file may say: of haze to drizzle, and of ice crystals.
+constexpr double kSmallestRadius_m = 1e-6, kLargestDroplet_m = 100e-6, kLargestCrystal_m = 500e-6;
 
 Species frozen(Species species) {
   return species == Species::kRain ? Species::kSnow : Species::kCloudIce;
@@ -21,13 +25,32 @@ struct Place {
   double temperature_K, density_kg_per_m3;
 };
 
-double droplet_radius(double content, const CloudSetting& setting, const Place& place) {
+// The file's own radius; nothing where it has none that is believed.
+std::optional<double> radius_there(const std::vector<float>& radius_m, std::size_t at,
+                                   double largest_m, WaterStatistics& statistics) {
+  if (radius_m.empty()) return {};
+  ++statistics.sized;
+  const double radius = double(radius_m[at]);
+  if (radius >= kSmallestRadius_m && radius <= largest_m) return radius;
+  ++statistics.without_size;
+  return {};
+}
+
+double droplet_radius(double content, const CloudSetting& setting, const Place& place,
+                      WaterStatistics& statistics) {
+  if (const auto radius =
+          radius_there(setting.droplet_radius_m, place.at, kLargestDroplet_m, statistics))
+    return *radius;
   const double sea = setting.water.empty() ? 1.0 : double(setting.water[place.n]);
   Droplets droplets = droplets_over(std::isfinite(sea) ? 1 - sea : 0);
   if (!setting.number.empty()) {
     const double per_m3 =
         double(setting.number[place.at]) * (setting.number_per_kg ? place.density_kg_per_m3 : 1);
-    if (per_m3 > 0) droplets.number_per_m3 = per_m3;
+    ++statistics.sized;
+    if (per_m3 > 0)
+      droplets.number_per_m3 = per_m3;
+    else
+      ++statistics.without_size;
   }
   return droplet_radius_m(content, droplets);
 }
@@ -41,17 +64,33 @@ double in_cloud(double content, const CloudSetting& setting, std::size_t at) {
 double extinction(Species species, double content, const CloudSetting& setting, const Place& place,
                   WaterStatistics& statistics) {
   if (species == Species::kCloudWater) {
-    const double radius = droplet_radius(in_cloud(content, setting, place.at), setting, place);
+    const double radius =
+        droplet_radius(in_cloud(content, setting, place.at), setting, place, statistics);
     const double result = content * droplet_extinction_m2_per_kg(radius);
     statistics.droplet_extinction += result;
     statistics.droplet_radius_sum_m += result * radius;
     return result;
   }
-  if (species == Species::kCloudIce)
-    return content * ice_extinction_m2_per_kg(ice_radius_m(in_cloud(content, setting, place.at),
-                                                           place.temperature_K,
-                                                           double(setting.latitude_deg[place.n])));
+  if (species == Species::kCloudIce) {
+    const auto radius = radius_there(setting.ice_radius_m, place.at, kLargestCrystal_m, statistics);
+    return content *
+           ice_extinction_m2_per_kg(radius ? *radius
+                                           : ice_radius_m(in_cloud(content, setting, place.at),
+                                                          place.temperature_K,
+                                                          double(setting.latitude_deg[place.n])));
+  }
   return content * precipitation_extinction_m2_per_kg(species, content, place.temperature_K);
+}
+
+// The part of a variable of both phases that is liquid.
+double liquid_part(const WaterVariable& water, double temperature_K) {
+  if (water.freezes_below_K == 0) return 1;
+  if (temperature_K < water.freezes_below_K) return 0;
+#ifdef NEPHO_MUTANT_ONE_PHASE
+  return 1;
+#endif
+  const double range_K = water.liquid_above_K - water.freezes_below_K;
+  return range_K > 0 ? std::min(1.0, (temperature_K - water.freezes_below_K) / range_K) : 1;
 }
 
 }  // namespace
@@ -90,16 +129,20 @@ void add_water(const WaterVariable& water, std::span<const float> values, const 
         ++statistics.without_air;
         continue;
       }
-      const bool freezes = water.freezes_below_K > 0 && state.temperature_K < water.freezes_below_K;
-      const Species species = freezes ? frozen(water.species) : water.species;
-      const double per_m =
-          extinction(species, content, setting,
-                     {n, at, state.temperature_K, state.density_kg_per_m3}, statistics);
       const std::size_t out = n * nz + k;
-      columns.extinction_per_m[out] += float(per_m);
-      if (is_ice(species)) columns.ice_extinction_per_m[out] += float(per_m);
       const float* interface_m = &columns.interface_m[n * (nz + 1) + k];
-      path_kg_per_m2[n] += float(content * double(interface_m[1] - interface_m[0]));
+      const double liquid = liquid_part(water, state.temperature_K);
+      for (const auto& [species, part] :
+           {std::pair{water.species, liquid}, {frozen(water.species), 1 - liquid}}) {
+        if (part == 0) continue;
+        const double per_m =
+            extinction(species, content * part, setting,
+                       {n, at, state.temperature_K, state.density_kg_per_m3}, statistics);
+        columns.extinction_per_m[out] += float(per_m);
+        if (is_ice(species)) columns.ice_extinction_per_m[out] += float(per_m);
+        path_kg_per_m2[n] +=
+            float(content * part * (double(interface_m[1]) - double(interface_m[0])));
+      }
       if (content > statistics.highest_content_kg_per_m3) {
         statistics.highest_content_kg_per_m3 = content;
         statistics.highest_variable = water.variable->name;

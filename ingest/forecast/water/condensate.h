@@ -16,6 +16,8 @@ struct WaterStatistics {
   std::string highest_variable;
   double highest_extinction_per_m = 0;
   double coldest_K = 1e30, warmest_K = -1e30;  // of air with water
+  // Cloud water or ice whose own radius or number is missing or no cloud's: the formula's is taken.
+  std::size_t sized = 0, without_size = 0;
   // Of columns; cloud apart from precipitation.
   double highest_cloud_kg_per_m2 = 0, mean_cloud_kg_per_m2 = 0;
   double highest_precipitation_kg_per_m2 = 0;
@@ -27,7 +29,9 @@ struct WaterStatistics {
 struct CloudSetting {
   std::vector<float> fraction;  // [k][j][i]; empty: overcast
   std::vector<float> number;    // droplets, [k][j][i]; empty: Martin et al.
-  bool number_per_kg = true;
+  bool number_per_kg = true;    // of moist air, rather than per m3
+  // Effective radii, [k][j][i]; they come before numbers. Empty: by number, by Sun & Rikus.
+  std::vector<float> droplet_radius_m, ice_radius_m;
   std::vector<float> water;         // 1 sea .. 0 land, [j][i]; empty: sea
   std::vector<float> latitude_deg;  // [j][i]
 };

@@ -56,6 +56,9 @@ double droplet_radius_m(double in_cloud_kg_per_m3, const Droplets& droplets) {
 }
 
 double droplet_efficiency(double radius_m) {
+#ifdef NEPHO_MUTANT_GEOMETRIC
+  return 2;
+#endif
   return 2 + 2.12 * std::pow(2 * kPi * radius_m / kWavelength_m, -2.0 / 3);
 }
 

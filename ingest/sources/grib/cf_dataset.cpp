@@ -322,6 +322,8 @@ void Builder::add_fields(const Group& group) {
                                            text("long_name", group.parameter.long_name)};
   if (!group.parameter.standard_name.empty())
     attributes.push_back(text("standard_name", group.parameter.standard_name));
+  for (const auto& [key, value] : group.parameter.said)
+    attributes.push_back(text(key.c_str(), value));
   const Grid& grid = table_.grids[std::size_t(choice_.grid)];
   if (!grid.mapping.empty()) attributes.push_back(text("grid_mapping", "crs"));
   if (grid.kind == Grid::Kind::kCells) attributes.push_back(text("grid_type", "unstructured"));

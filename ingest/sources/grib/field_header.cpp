@@ -71,10 +71,10 @@ std::optional<std::int64_t> valid_time_ns(const Message& message) {
   return seconds * 1'000'000'000;
 }
 
-FieldHeader header_of(const Message& message) {
+FieldHeader header_of(const Message& message, const forecast::UserNames& names) {
   FieldHeader header;
   header.level = level_of(message);
-  header.parameter = parameter_of(message, header.level);
+  header.parameter = parameter_of(message, header.level, names);
   header.valid_ns = valid_time_ns(message);
   // Edition 2: a range of time is part of the templates that have one, whatever is done over it.
   header.instant = message.need_integer("editionNumber") == 2

@@ -18,7 +18,7 @@ struct FieldHeader {
   bool instant = true;                   // no mean, sum or extreme over time
   long member = 0;                       // of an ensemble
 };
-FieldHeader header_of(const Message& message);
+FieldHeader header_of(const Message& message, const forecast::UserNames& names = {});
 
 // Reference time plus step.
 std::optional<std::int64_t> valid_time_ns(const Message& message);

@@ -33,7 +33,7 @@ std::string number_text(double value) {
   const Grid& grid = table.grids[std::size_t(field.grid)];
   throw Error({"this GRIB grid is not read", table.where(field),
                "regular, rotated or reduced latitudes and longitudes, Lambert, Mercator, polar "
-               "stereographic, or places that ecCodes knows",
+               "stereographic, geostationary views, or places that ecCodes knows",
                grid.text() + ": " + grid.why,
                "interpolate it first, for example with cdo "
                "remapcon,r720x360"});
@@ -85,7 +85,7 @@ std::string FieldTable::where(const Field& field) const {
          field.header.level.name + " " + number_text(field.header.level.value) + ")";
 }
 
-FieldTable table_of(const std::vector<std::string>& paths) {
+FieldTable table_of(const std::vector<std::string>& paths, const forecast::UserNames& names) {
   FieldTable table;
   table.paths = paths;
   struct GridIndex {
@@ -96,7 +96,7 @@ FieldTable table_of(const std::vector<std::string>& paths) {
     for (const FieldPlace& place : scan_fields(paths[file], int(file))) {
       const std::string where = paths[file] + ", message at byte " + std::to_string(place.message);
       const Message message(read_headers(paths[file], place), where);
-      Field field{place, header_of(message), 0, 0};
+      Field field{place, header_of(message, names), 0, 0};
       const auto [at, is_new] =
           known.emplace(message.text("md5GridSection"), GridIndex{int(table.grids.size()), 0});
       if (is_new) {

@@ -29,7 +29,7 @@ struct FieldTable {
 };
 
 // Reads headers only, once. To be called under the I/O lock. Throws Error: scan_fields(), Message.
-FieldTable table_of(const std::vector<std::string>& paths);
+FieldTable table_of(const std::vector<std::string>& paths, const forecast::UserNames& names = {});
 
 // Leaves the fields of one grid that a forecast can use, each once, and says what it left out. The
 // grid is the cloud water's, or the first field's. Throws Error where water is on several grids,

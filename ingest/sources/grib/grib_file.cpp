@@ -43,12 +43,13 @@ std::vector<T> slab(const std::vector<double>& all, const std::vector<std::size_
 
 }  // namespace
 
-GribFile::GribFile(const std::vector<std::string>& paths, IoLock io_lock)
+GribFile::GribFile(const std::vector<std::string>& paths, IoLock io_lock,
+                   const forecast::UserNames& names)
     : DataFile(paths.size() == 1
                    ? paths.front()
                    : paths.front() + " and " + std::to_string(paths.size() - 1) + " more"),
       io_lock_(io_lock) {
-  table_ = locked(io_lock_, [&] { return table_of(paths); });
+  table_ = locked(io_lock_, [&] { return table_of(paths, names); });
   CfDataset dataset = cf_dataset(table_);
   dimensions_ = std::move(dataset.dimensions);
   variables_ = std::move(dataset.variables);

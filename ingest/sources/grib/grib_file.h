@@ -20,7 +20,8 @@ class GribFile final : public forecast::DataFile {
  public:
   // Times of one forecast, or its fields, spread over files in any way. Throws Error: as
   // scan_fields(), table_of() and usable_fields().
-  GribFile(const std::vector<std::string>& paths, IoLock io_lock);
+  GribFile(const std::vector<std::string>& paths, IoLock io_lock,
+           const forecast::UserNames& names = {});
 
   // Throws Error on damage, naming the message.
   std::vector<float> read_floats(const forecast::FileVariable& variable,

@@ -150,7 +150,7 @@ void find_axes(const Message& message, Grid& grid, const std::function<Message*(
   } else if (type == "polar_stereographic") {
     polar_stereographic(message, grid);
   } else if (type == "space_view") {
-    grid.why = "a satellite's view is not read from GRIB";
+    space_view(message, grid);
   } else {
     by_places(grid, whole);
   }

@@ -161,12 +161,54 @@ void rotate(const Message& message, Grid& grid) {
   const double south = message.need_number("longitudeOfSouthernPoleInDegrees");
   put(grid, "grid_north_pole_latitude", -message.need_number("latitudeOfSouthernPoleInDegrees"));
   put(grid, "grid_north_pole_longitude", std::remainder(south + 180, 360));
+  // About the new polar axis, clockwise as seen from its southern end (WMO manual 306, template
+  // 3.1): meridians are numbered from that much further east, the true pole's too. ecCodes 2.28
+  // turns about the Earth's axis instead.
   const double turn = message.number("angleOfRotationInDegrees").value_or(0);
+#ifdef NEPHO_MUTANT_UNTURNED
   put(grid, "north_pole_grid_longitude", 0);
-  if (turn != 0) {
-    grid.kind = Grid::Kind::kUnknown;
-    grid.why = "its rotated pole is turned by " + short_number(turn) + " degrees as well";
-  }
+  (void)turn;
+#else
+  put(grid, "north_pole_grid_longitude", turn == 0 ? 0 : std::remainder(-turn, 360));
+#endif
+}
+
+// CGMS 03, LRIT/HRIT global specification, 4.4: angles about the satellite, x in the plane of the
+// equator first. WMO manual 306, template 3.90: the Earth's disc is dx by dy grid lengths wide.
+void space_view(const Message& message, Grid& grid) {
+  const auto degrees = [&](const char* key) {
+    const std::string name(key);
+    if (const auto value = message.number((name + "InDegrees").c_str())) return *value;
+    return message.need_number(key) * 1e-6;
+  };
+  const auto refuse = [&](const std::string& why) { grid.why = why; };
+  if (degrees("latitudeOfSubSatellitePoint") != 0)
+    return refuse("its satellite is not above the equator");
+  if (message.number("orientationOfTheGridInDegrees").value_or(0) != 0)
+    return refuse("its rows do not run east");
+  const auto distance = message.number("NrInRadiusOfEarth");
+  if (!distance || !(*distance > 1 && *distance < 1000))
+    return refuse("it does not say how far the satellite is");
+  const Earth earth = earth_of(message);
+  const double dx = message.need_number("dx"), dy = message.need_number("dy");
+  if (!(dx > 0 && dy > 0)) refuse_grid(message, "a disc of no width");
+  const double height_m = (*distance - 1) * earth.equatorial_m;
+  const double disc_rad = 2 * std::asin(1 / *distance);
+  const double step_x = disc_rad / dx * height_m * (grid.x_falls ? -1 : 1);
+  const double step_y =
+      disc_rad / dy * (earth.polar_m / earth.equatorial_m) * height_m * (grid.y_falls ? -1 : 1);
+  const double first_x =
+      double(message.integer("Xo").value_or(0)) - message.need_number("XpInGridLengths");
+  const double first_y =
+      double(message.integer("Yo").value_or(0)) - message.need_number("YpInGridLengths");
+  for (std::size_t i = 0; i < grid.nx; ++i) grid.x.push_back((double(i) + first_x) * step_x);
+  for (std::size_t j = 0; j < grid.ny; ++j) grid.y.push_back((double(j) + first_y) * step_y);
+  put_name(grid, "geostationary", earth);
+  put(grid, "perspective_point_height", height_m);
+  put(grid, "longitude_of_projection_origin", degrees("longitudeOfSubSatellitePoint"));
+  put(grid, "latitude_of_projection_origin", 0);
+  grid.mapping.push_back({"sweep_angle_axis", "y", {}});
+  grid.kind = Grid::Kind::kMap;
 }
 
 }  // namespace nepho::grib

@@ -11,6 +11,8 @@ namespace nepho::grib {
 void lambert(const Message& message, Grid& grid);
 void mercator(const Message& message, Grid& grid);
 void polar_stereographic(const Message& message, Grid& grid);
+// From a geostationary satellite: angles of view times its height.
+void space_view(const Message& message, Grid& grid);
 // Longitudes and latitudes found so far are those of a rotated pole.
 void rotate(const Message& message, Grid& grid);
 

@@ -2,7 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "forecast/conventions/user_names.h"
 #include "sources/grib/message.h"
 
 namespace nepho::grib {
@@ -37,9 +40,13 @@ struct Parameter {
   bool water = false;     // condensate
   bool constant = false;  // the same at all times: the ground, the heights of levels
   Change change = Change::kNone;
-  bool known = false;  // of our table
+  bool known = false;  // of our table, or a user's
+  // Further attributes of the variable: what a user says of it, or that the row is untested.
+  std::vector<std::pair<std::string, std::string>> said;
 };
-Parameter parameter_of(const Message& message, const Level& level);
+// A user's names come first.
+Parameter parameter_of(const Message& message, const Level& level,
+                       const forecast::UserNames& names = {});
 // Geopotential of the ground, as its height: of a field that does not say that it is the ground's.
 Parameter surface_geopotential();
 
