@@ -48,6 +48,10 @@ case $what in
     says "bare.ppm" said
     if view scene.json --path none.json 2> said; then fail "a path that is not there"; fi
     says "none.json" said
+    if view scene.json --target-ms 30 --frames 3 2> said; then fail "a target in motion"; fi
+    says "--target-ms" said
+    if view scene.json --coarse 3 --frames 3 2> said; then fail "every third pixel"; fi
+    says "1, 2, 4 or 8" said
     ;;
   flight)
     view scene.json --frames 40 --record flown.json --screenshot shot.ppm > said 2>&1 ||

@@ -198,9 +198,11 @@ void add_bench_options(CLI::App& command, BenchOptions& o) {
 }
 
 void add_view_options(CLI::App& command, ViewOptions& o) {
-  command.add_option("--frames", o.frames, "end after so many, and say how long they took");
+  CLI::Option* frames =
+      command.add_option("--frames", o.frames, "end after so many, and say how long they took");
   CLI::Option* path =
-      command.add_option("--path", o.path, "fly along what --record wrote, and end");
+      command.add_option("--path", o.path, "fly along what --record wrote, and end")
+          ->excludes(frames);
   command.add_option("--record", o.record, "write the flight to this file")->excludes(path);
   command.add_option("--bench", o.bench, "times of all passes, median and worst: .csv or .json");
   command.add_option("--screenshot", o.screenshot, "at the end, a picture at full quality");

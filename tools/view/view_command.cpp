@@ -64,12 +64,17 @@ class Viewer {
 
 Viewer::Viewer(const ViewOptions& options)
     : options_(options), pictures_(default_module_folders()), host_(default_module_folders()) {
+  if (options.render.target_error || options.render.target_ms)
+    throw Error({"a view that moves keeps no target",
+                 options.render.target_error ? "--target-error" : "--target-ms", "--tolerance", "",
+                 "nephoscope render chooses settings for a target"});
   if (options.path) replay_ = read_camera_path(*options.path);
   if (options.frames) most_frames_ = int(number_value("--frames", *options.frames));
   if (options.coarse) coarse_ = int(number_value("--coarse", *options.coarse));
-  if (most_frames_ < 0 || coarse_ < 0 || coarse_ > 64)
-    throw Error(
-        {"bad value", "--frames, --coarse", "frames from 1 on, every 1st to 64th pixel", "", ""});
+  if (options.frames && most_frames_ < 1)
+    throw Error({"bad value", "--frames", "a number of frames from 1 on", *options.frames, ""});
+  if (options.coarse && coarse_ != 1 && coarse_ != 2 && coarse_ != 4 && coarse_ != 8)
+    throw Error({"bad value", "--coarse", "1, 2, 4 or 8", *options.coarse, ""});
   if (replay_) most_frames_ = int(replay_->cameras.size());
   RenderOptions render = options.render;
   Scene scene =
