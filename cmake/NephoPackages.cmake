@@ -9,6 +9,7 @@ nepho_package_option(NETCDF "Forecasts in NetCDF files (.nc)")
 nepho_package_option(GRIB "Forecasts in GRIB files (.grib, .grb, .grib2, .grb2)")
 nepho_package_option(GDAL "Rasters of clouds and heights of ground (.tif, .vrt, .img, .asc, .hgt)")
 nepho_package_option(PROJ "Map projections beyond GeographicLib's, through PROJ")
+nepho_package_option(WINDOW "The window of nephoscope view, through GLFW and Dear ImGui")
 nepho_package_option(OIIO "PNG, EXR and HDR pictures through OpenImageIO")
 
 # nepho_package_missing(OPENVDB "text"): says so, or stops.

@@ -33,6 +33,8 @@ struct RenderRequest {
   RenderSettings settings;
   // For tests: does also what was predicted to change nothing (RenderReport::left_out).
   bool leave_nothing_out = false;
+  // Compiles what any tree of these volumes may need, so that a view that moves compiles once.
+  bool any_tree = false;
   // For tests: marches the light of all samples, each where it is (gl/light_samples.h).
   bool march_all_light = false;
   bool keep_lights = false;    // for tests: RenderResult::lights

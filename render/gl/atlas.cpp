@@ -70,21 +70,25 @@ Texture make_texture_3d(const std::array<int, 3>& size, GLenum format) {
   return texture;
 }
 
+void upload_tile(const Texture& atlas, const std::array<int, 3>& size, std::uint64_t tile,
+                 const std::uint16_t* codes) {
+  const auto [x, y, z] = tile_origin(tile, size);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage3D(atlas.id(), 0, x, y, z, kTileSide, kTileSide, kTileSide, GL_RED,
+                      GL_UNSIGNED_SHORT, codes);
+}
+
 namespace {
 
 // `codes_of`: of a brick, or null for a tile that is left as it is.
 template <class CodesOf>
 Texture upload(const Forest& forest, const std::array<int, 3>& size, CodesOf codes_of) {
   Texture atlas = make_texture_3d(size, GL_R16);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  std::uint64_t slot = 0;
+  std::uint64_t tile = 0;
   for (const VolumeTree& tree : forest.volumes)
     for (const LeafBrick& brick : tree.bricks) {
-      const auto [x, y, z] = tile_origin(slot++, size);
-      const std::uint16_t* codes = codes_of(brick);
-      if (!codes) continue;
-      glTextureSubImage3D(atlas.id(), 0, x, y, z, kTileSide, kTileSide, kTileSide, GL_RED,
-                          GL_UNSIGNED_SHORT, codes);
+      if (const std::uint16_t* codes = codes_of(brick)) upload_tile(atlas, size, tile, codes);
+      ++tile;
     }
   check_errors("upload of bricks");
   return atlas;

@@ -31,6 +31,9 @@ std::uint64_t bytes_with_ice(std::uint64_t nodes, std::uint64_t bricks, std::uin
 // Linear filter, clamped. Made once: on llvmpipe a change of sampler state compiles anew.
 Texture make_texture_3d(const std::array<int, 3>& size, GLenum format);
 
+// One tile of 9^3 codes of an atlas of GL_R16.
+void upload_tile(const Texture& atlas, const std::array<int, 3>& size, std::uint64_t tile,
+                 const std::uint16_t* codes);
 // The bricks' codes, R16 UNORM; of their ice at the same places, tiles without it are not written.
 Texture upload_bricks(const Forest& forest, const std::array<int, 3>& size);
 Texture upload_ice(const Forest& forest, const std::array<int, 3>& size);

@@ -27,18 +27,6 @@ glm::dvec3 across(const glm::dvec3& up) {
   return glm::normalize(glm::cross(up, other));
 }
 
-void set_camera(FrameData& frame, const Camera& camera, const RenderSettings& settings) {
-  const glm::dvec3 forward = glm::normalize(camera.target_m - camera.eye_m);
-  glm::dvec3 right = glm::cross(forward, camera.up);
-  right = glm::length(right) > 1e-9 ? glm::normalize(right) : across(forward);
-  const glm::dvec3 up = glm::cross(right, forward);
-  const double half = std::tan(0.5 * camera.vertical_fov_rad);
-  store(frame.eye_m, camera.eye_m);
-  store(frame.forward, forward);
-  store(frame.right, half * settings.width / settings.height * right);
-  store(frame.up, half * up);
-}
-
 void set_light(FrameData& frame, const RenderRequest& request) {
   store(frame.to_sun, glm::normalize(request.sun.to_sun));
   store(frame.sun_irradiance, request.sun.irradiance_W_per_m2_nm);
@@ -170,6 +158,20 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
 
 }  // namespace
 
+void set_camera(FrameData& frame, const Camera& camera, const RenderSettings& settings) {
+  const glm::dvec3 forward = glm::normalize(camera.target_m - camera.eye_m);
+  glm::dvec3 right = glm::cross(forward, camera.up);
+  right = glm::length(right) > 1e-9 ? glm::normalize(right) : across(forward);
+  const glm::dvec3 up = glm::cross(right, forward);
+  const double half = std::tan(0.5 * camera.vertical_fov_rad);
+  store(frame.eye_m, camera.eye_m);
+  store(frame.forward, forward);
+  store(frame.right, half * settings.width / settings.height * right);
+  store(frame.up, half * up);
+  frame.width = settings.width;
+  frame.height = settings.height;
+}
+
 bool sky_lights(const RenderRequest& request) {
   if (request.planet) return request.planet->air.has_value();
   if (request.leave_nothing_out) return true;
@@ -198,8 +200,6 @@ GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest) {
   const RenderSettings& settings = request.settings;
   set_camera(scene.frame, request.camera, settings);
   set_light(scene.frame, request);
-  scene.frame.width = settings.width;
-  scene.frame.height = settings.height;
   scene.frame.step_voxels = float(settings.step_voxels.value_or(2));
   scene.frame.tolerance = float(settings.tolerance);
   scene.sky = sky_lights(request);

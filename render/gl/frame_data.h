@@ -36,6 +36,9 @@ bool sky_lights(const RenderRequest& request);
 // Whether a volume has ice beside its extinction: there is then a second atlas.
 bool tells_ice(const RenderRequest& request);
 
+// Eye and basis of a picture of `settings`' size, and that size.
+void set_camera(FrameData& frame, const Camera& camera, const RenderSettings& settings);
+
 GpuScene make_gpu_scene(const RenderRequest& request, const Forest& forest);
 
 }  // namespace nepho::gl

@@ -169,8 +169,8 @@ class PlanetBuilder {
 #if defined(NEPHO_MUTANT_CLOUDS_FORGOTTEN)
     clouds_.balls.clear();
 #endif
-    scene_.clouds =
-        !clouds_.balls.empty() || (request_.leave_nothing_out && !forest_.volumes.empty());
+    scene_.clouds = !clouds_.balls.empty() ||
+                    ((request_.leave_nothing_out || request_.any_tree) && !forest_.volumes.empty());
     scene_.data.cloud_top_m = float(std::max(0.0, clouds_.top_radius_m - scene_.data.radius_m));
   }
 
@@ -222,7 +222,8 @@ class PlanetBuilder {
 #if defined(NEPHO_MUTANT_BOLD_PREDICTION)
     scene_.sun_map_change *= 0.01;
 #endif
-    scene_.sun_map = scene_.sun_map_change >= kLeastShadow || request_.leave_nothing_out;
+    scene_.sun_map =
+        scene_.sun_map_change >= kLeastShadow || request_.leave_nothing_out || request_.any_tree;
     store(data.map_center_m, center_m);
     for (int c = 0; c < 3; ++c) {
       data.map_axes[c] = u[c];
@@ -244,7 +245,9 @@ class PlanetBuilder {
     data.cloud_bottom_m =
         float(std::min(clouds_.bottom_radius_m - data.radius_m, double(data.cloud_top_m)));
     const double thickness_m = double(data.cloud_top_m) - data.cloud_bottom_m;
-    scene_.map_bands = std::clamp(int(std::ceil(thickness_m / kLeastBand_m)), 1, kMostBands);
+    scene_.map_bands = request_.any_tree
+                           ? kMostBands
+                           : std::clamp(int(std::ceil(thickness_m / kLeastBand_m)), 1, kMostBands);
     data.map_band_m = float(thickness_m / scene_.map_bands);
   }
 

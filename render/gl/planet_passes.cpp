@@ -49,15 +49,16 @@ std::vector<PixelTexel> read_texels(GLuint id, int width, int height) {
   return texels;
 }
 
-void dispatch_blocks(const Program& program, int width, int height) {
+int blocks(int width, int height) {
+  return ((width + kBlock - 1) / kBlock) * ((height + kBlock - 1) / kBlock);
+}
+void dispatch_block(const Program& program, int width, int height, int block) {
   glUseProgram(program.id());
-  const GLint first = glGetUniformLocation(program.id(), "first_pixel");
-  for (int y = 0; y < height; y += kBlock)
-    for (int x = 0; x < width; x += kBlock) {
-      const int w = std::min(kBlock, width - x), h = std::min(kBlock, height - y);
-      glUniform2i(first, x, y);
-      glDispatchCompute(GLuint((w + 7) / 8), GLuint((h + 7) / 8), 1);
-    }
+  const int columns = (width + kBlock - 1) / kBlock;
+  const int x = block % columns * kBlock, y = block / columns * kBlock;
+  const int w = std::min(kBlock, width - x), h = std::min(kBlock, height - y);
+  glUniform2i(glGetUniformLocation(program.id(), "first_pixel"), x, y);
+  glDispatchCompute(GLuint((w + 7) / 8), GLuint((h + 7) / 8), 1);
 }
 
 std::string number(double value) {
@@ -71,8 +72,9 @@ std::string percent(double part) {
 
 }  // namespace
 
-PlanetPasses::PlanetPasses(const RenderRequest& request, const Forest& forest)
-    : request_(request), scene_(make_planet_scene(request, forest)) {}
+PlanetPasses::PlanetPasses(const RenderRequest& request, const Forest& forest,
+                           std::shared_ptr<const AirTables> tables)
+    : request_(request), scene_(make_planet_scene(request, forest)), tables_(std::move(tables)) {}
 
 std::string PlanetPasses::defines() const {
   std::string text = "#define NEPHO_GROUND 1\n";
@@ -89,65 +91,99 @@ std::string PlanetPasses::defines() const {
   return text;
 }
 
-void PlanetPasses::upload() {
+void PlanetPasses::upload(const PlanetPasses* last) {
   data_ = Buffer(&scene_.data, sizeof(PlanetData));
-  data_.bind(kPlanetBinding);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  if (scene_.air) {
-    const Planet& planet = *request_.planet;
-    tables_ = std::make_shared<const AirTables>(
-        make_air_tables(*planet.air, planet.body.equatorial_m, mean_ground_albedo(request_)));
-    const AirTables& tables = *tables_;
-    // Float: twilight is below what half floats hold, and filters of half floats are no faster.
-    depth_ = make_texture_2d(tables.depth.width, tables.depth.height, GL_RGBA32F, GL_LINEAR);
-    glTextureSubImage2D(depth_.id(), 0, 0, 0, tables.depth.width, tables.depth.height, GL_RGB,
-                        GL_FLOAT, tables.depth.rgb.data());
-    const std::array<const AirTable*, 6> layers = {&tables.multiple, &tables.multiple_p2,
-                                                   &tables.sky_up,   &tables.sky_side,
-                                                   &tables.sky_down, &tables.sky_low};
-    const int width = layers[0]->width, height = layers[0]->height;
-    light_ = make_texture_array(width, height, int(layers.size()));
-    for (std::size_t layer = 0; layer < layers.size(); ++layer)
-      glTextureSubImage3D(light_.id(), 0, 0, 0, GLint(layer), width, height, 1, GL_RGB, GL_FLOAT,
-                          layers[layer]->rgb.data());
-    table_bytes_ = 16 * (std::uint64_t(tables.depth.width) * std::uint64_t(tables.depth.height) +
-                         layers.size() * std::uint64_t(width) * std::uint64_t(height));
-    glBindTextureUnit(kDepthUnit, depth_.id());
-    glBindTextureUnit(kLightUnit, light_.id());
+  if (scene_.air) upload_tables(last);
+  if (scene_.terrain) upload_surface(last);
+  if (scene_.sun_map) {
+    const int size = scene_.map_size;
+    sun_map_ = make_texture_array(size, size, scene_.map_bands);
+    map_bytes_ = 16 * std::uint64_t(size) * std::uint64_t(size) * std::uint64_t(scene_.map_bands);
   }
-  if (scene_.terrain) {
-    const SurfaceMap& map = *scene_.surface;
-    std::vector<float> texels;
-    texels.reserve(2 * map.height_m.size());
-    for (std::size_t i = 0; i < map.height_m.size(); ++i) {
-      texels.push_back(map.height_m[i]);
-      texels.push_back(map.water[i]);
-    }
-    surface_ = make_texture_2d(map.nx, map.ny, GL_RG32F, GL_NEAREST);
-    glTextureSubImage2D(surface_.id(), 0, 0, 0, map.nx, map.ny, GL_RG, GL_FLOAT, texels.data());
-    surface_bytes_ = 4 * texels.size();
-    glBindTextureUnit(kSurfaceUnit, surface_.id());
-  }
-  const int width = request_.settings.width, height = request_.settings.height;
-  met_ = make_texture_2d(width, height, GL_RGBA32F, GL_NEAREST);
-  met_bytes_ = 16 * std::uint64_t(width) * std::uint64_t(height);
   check_errors("upload of the planet");
 }
 
-void PlanetPasses::draw_sun_map(const std::string& switches) {
-  const int size = scene_.map_size;
-  sun_map_ = make_texture_array(size, size, scene_.map_bands);
-  map_bytes_ = 16 * std::uint64_t(size) * std::uint64_t(size) * std::uint64_t(scene_.map_bands);
-  glBindImageTexture(0, sun_map_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  dispatch_blocks(compile("sun_map", nepho_shader_sun_map, switches), size, size);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  glBindTextureUnit(kSunMapUnit, sun_map_.id());
+void PlanetPasses::upload_tables(const PlanetPasses* last) {
+  if (!tables_) {
+    const Planet& planet = *request_.planet;
+    tables_ = std::make_shared<const AirTables>(
+        make_air_tables(*planet.air, planet.body.equatorial_m, mean_ground_albedo(request_)));
+  }
+  const AirTables& tables = *tables_;
+  const std::array<const AirTable*, 6> layers = {&tables.multiple, &tables.multiple_p2,
+                                                 &tables.sky_up,   &tables.sky_side,
+                                                 &tables.sky_down, &tables.sky_low};
+  const int width = layers[0]->width, height = layers[0]->height;
+  table_bytes_ = 16 * (std::uint64_t(tables.depth.width) * std::uint64_t(tables.depth.height) +
+                       layers.size() * std::uint64_t(width) * std::uint64_t(height));
+  if (last && last->tables_ == tables_) {
+    depth_ = last->depth_;
+    light_ = last->light_;
+    return;
+  }
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  // Float: twilight is below what half floats hold, and filters of half floats are no faster.
+  Texture depth = make_texture_2d(tables.depth.width, tables.depth.height, GL_RGBA32F, GL_LINEAR);
+  glTextureSubImage2D(depth.id(), 0, 0, 0, tables.depth.width, tables.depth.height, GL_RGB,
+                      GL_FLOAT, tables.depth.rgb.data());
+  Texture light = make_texture_array(width, height, int(layers.size()));
+  for (std::size_t layer = 0; layer < layers.size(); ++layer)
+    glTextureSubImage3D(light.id(), 0, 0, 0, GLint(layer), width, height, 1, GL_RGB, GL_FLOAT,
+                        layers[layer]->rgb.data());
+  depth_ = std::make_shared<const Texture>(std::move(depth));
+  light_ = std::make_shared<const Texture>(std::move(light));
 }
 
-std::vector<PixelTexel> PlanetPasses::ground_distances(const std::string& switches) {
-  const int width = request_.settings.width, height = request_.settings.height;
+void PlanetPasses::upload_surface(const PlanetPasses* last) {
+  const SurfaceMap& map = *scene_.surface;
+  surface_bytes_ = 8 * std::uint64_t(map.height_m.size());
+  if (last && last->scene_.surface == scene_.surface) {
+    surface_ = last->surface_;
+    return;
+  }
+  std::vector<float> texels;
+  texels.reserve(2 * map.height_m.size());
+  for (std::size_t i = 0; i < map.height_m.size(); ++i) {
+    texels.push_back(map.height_m[i]);
+    texels.push_back(map.water[i]);
+  }
+  Texture surface = make_texture_2d(map.nx, map.ny, GL_RG32F, GL_NEAREST);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(surface.id(), 0, 0, 0, map.nx, map.ny, GL_RG, GL_FLOAT, texels.data());
+  surface_ = std::make_shared<const Texture>(std::move(surface));
+}
+
+void PlanetPasses::bind() const {
+  data_.bind(kPlanetBinding);
+  if (depth_) glBindTextureUnit(kDepthUnit, depth_->id());
+  if (light_) glBindTextureUnit(kLightUnit, light_->id());
+  if (surface_) glBindTextureUnit(kSurfaceUnit, surface_->id());
+  if (sun_map_.id()) glBindTextureUnit(kSunMapUnit, sun_map_.id());
+}
+
+int PlanetPasses::sun_map_parts() const {
+  return scene_.sun_map ? blocks(scene_.map_size, scene_.map_size) : 0;
+}
+void PlanetPasses::draw_sun_map_part(Programs& programs, const std::string& switches, int part) {
+  glBindImageTexture(0, sun_map_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  dispatch_block(programs.get("sun_map", nepho_shader_sun_map, switches), scene_.map_size,
+                 scene_.map_size, part);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+std::vector<PixelTexel> PlanetPasses::ground_distances(Programs& programs,
+                                                       const std::string& switches, int width,
+                                                       int height) {
+  if (met_width_ != width || met_height_ != height) {
+    met_ = make_texture_2d(width, height, GL_RGBA32F, GL_NEAREST);
+    met_width_ = width;
+    met_height_ = height;
+    met_bytes_ = 16 * std::uint64_t(width) * std::uint64_t(height);
+  }
   glBindImageTexture(1, met_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  dispatch_blocks(compile("surface", nepho_shader_surface, switches), width, height);
+  const Program& program = programs.get("surface", nepho_shader_surface, switches);
+  for (int block = 0; block < blocks(width, height); ++block)
+    dispatch_block(program, width, height, block);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   return read_texels(met_.id(), width, height);
 }

@@ -2,7 +2,6 @@
 #include "renderer.h"
 
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <optional>
 #include <string>
@@ -10,51 +9,28 @@
 #include "core/error.h"
 #include "gl/atlas.h"
 #include "gl/frame_data.h"
-#include "gl/gpu_clock.h"
 #include "gl/ground_pass.h"
+#include "gl/light_pass.h"
 #include "gl/light_samples.h"
 #include "gl/object.h"
+#include "gl/picture.h"
 #include "gl/planet_passes.h"
+#include "gl/programs.h"
+#include "gl/switches.h"
 #include "gl/view_pass.h"
 #include "reference/probe.h"
 #include "tree/forest.h"
 
 extern const char* const nepho_shader_view;
 extern const char* const nepho_shader_ground;
-extern const char* const nepho_shader_light_sun;
-extern const char* const nepho_shader_light_sky;
-extern const char* const nepho_shader_light_fill;
-extern const char* const nepho_shader_light_extend;
 
 namespace nepho {
 namespace {
 
-// A ray is dropped when it can add no more than this share of what lies behind.
-constexpr float kLeastTransmittance = 1.0f / 8192, kLeastTransmittanceExact = 1e-6f;
-constexpr double kLeastBend_cells = 2e-3;   // of curved coordinates, that a parabola may miss
 constexpr double kFilterError = 3.0 / 512;  // of weights of 8 bits (lattice.md 5)
 // Of the picture, rms: a step that begins in clear air takes a neighbour's light there. Measured:
 // 1.4e-3 on a thin ball, 2e-4 and less on thick ones, plume, forecast and LES.
 constexpr double kSparedLightError = 2e-3;
-constexpr GLuint kSampleBinding = 4;  // the phases' in the view pass
-constexpr std::size_t kTilesPerDispatch =
-    512;  // 729 samples each: within the 65535 groups of OpenGL 4.5
-
-// A part of what the tolerance allows.
-float least_transmittance(const RenderSettings& settings) {
-  const float most = settings.step_voxels ? kLeastTransmittance : 0.01f;
-  return std::clamp(0.1f * float(settings.tolerance), kLeastTransmittanceExact, most);
-}
-
-double process_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-struct Counters {  // march.glsl: CounterBuffer
-  std::uint32_t overruns = 0, rays = 0, extinction_samples = 0, source_samples = 0;
-};
 
 class Renderer {
  public:
@@ -62,20 +38,13 @@ class Renderer {
   RenderResult run();
 
  private:
-  bool exact() const { return request_.settings.step_voxels == 0.0; }
   bool sky_light() const { return scene_.sky; }
-  bool texels8() const;
-  bool parabolas() const;
   std::string defines(bool lit) const;
   void timed(const char* name, const std::function<void()>& work);
   void upload();
   void light();
-  using SampleList = std::vector<std::uint32_t> (gl::LightSamples::*)(std::size_t,
-                                                                      std::size_t) const;
-  void light_pass(const gl::Program& program, SampleList list, int entries_each = 1);
   void view();
   void ground();
-  void make_image();
   void keep_lights();
   void read_counters();
   void report();
@@ -83,7 +52,7 @@ class Renderer {
   const RenderRequest& request_;
   Forest forest_;
   gl::GpuScene scene_;
-  std::optional<gl::LightSamples> light_samples_;
+  gl::Programs programs_;
   double spared_light_ = 0;                 // part of the light's samples that took another's
   std::optional<gl::PlanetPasses> planet_;  // absent: no planet
   std::array<int, 3> atlas_size_{}, light_size_{};
@@ -94,67 +63,12 @@ class Renderer {
   RenderResult result_;
 };
 
-bool Renderer::texels8() const {
-  const RenderSettings& s = request_.settings;
-  if (s.fetch) return *s.fetch == Fetch::kTexels8;
-  return exact() || (!s.step_voxels && s.tolerance < 2e-3);
-}
-
-// Parabolas for the curved coordinates within a leaf: no more than kLeastBend of a cell off.
-double parabola_error_cells(double leaf_rad) {
-  return 0.2 * leaf_rad * leaf_rad;
-}
-bool Renderer::parabolas() const {
-  return scene_.has_shell && !texels8() && !request_.leave_nothing_out &&
-         parabola_error_cells(scene_.widest_leaf_rad) <= kLeastBend_cells;
-}
-
 void Renderer::timed(const char* name, const std::function<void()>& work) {
-  const double before_s = process_cpu_s();
-  gl::GpuClock clock;
-  work();
-  const double gpu_s = clock.stop_s();
-  glFinish();
-  gl::check_errors(name);
-  result_.report.passes.push_back({name, process_cpu_s() - before_s, gpu_s});
+  gl::timed(result_.report.passes, name, work);
 }
 
 std::string Renderer::defines(bool lit) const {
-  const RenderSettings& s = request_.settings;
-  std::string text;
-  const auto define = [&](const std::string& name, const std::string& value = "1") {
-    text += "#define NEPHO_" + name + " " + value + "\n";
-  };
-  define("VOLUMES", std::to_string(std::max<std::size_t>(scene_.volumes.size(), 1)));
-  // Loops over volumes and octaves are written out: see shaders/march.glsl.
-  const int octaves = s.light == Light::kSingle ? 1 : s.octaves;
-  std::string each_volume, each_octave;
-  for (std::size_t v = 0; v < scene_.volumes.size(); ++v)
-    each_volume += "NEPHO_DO(" + std::to_string(v) + ") ";
-  for (int n = 1; n < octaves; ++n) each_octave += "NEPHO_DO_OCTAVE(" + std::to_string(n) + ") ";
-  define("EACH_VOLUME", each_volume);
-  define("EACH_OCTAVE", each_octave);
-  define("OCTAVES", std::to_string(octaves));
-  if (s.light == Light::kSingle) define("SINGLE");
-  if (scene_.has_box) define("BOX");
-  if (scene_.has_shell) define("SHELL");
-  if (texels8()) define("TEXELS8");
-  if (exact()) define("CELL_EXACT");
-  if (!s.step_voxels) define("ADAPTIVE");
-  if (parabolas()) define("LEAF_PARABOLA");
-  if (sky_light()) define("SKY_LIGHT");
-  if (scene_.absorbs) define("ABSORPTION");
-  if (scene_.has_ice) define("ICE");
-  if (lit) define("LIT");
-  if (request_.count_samples) define("COUNT_SAMPLES");
-  if (planet_) text += planet_->defines();
-  const double own_step = s.step_voxels && *s.step_voxels > 0 ? *s.step_voxels : 2.0;
-  define("SUN_STEP", std::to_string(request_.light_step_voxels.value_or(own_step)));
-#ifdef NEPHO_MUTANT_SHADER  // tests: one planted mistake, by name
-  define(NEPHO_MUTANT_SHADER);
-#endif
-  define("LIGHT_FORMAT", sky_light() ? "rgba16f" : "r16f");
-  return text;
+  return gl::shader_switches(request_, scene_, planet_ ? planet_->defines() : "", lit);
 }
 
 void Renderer::upload() {
@@ -168,7 +82,7 @@ void Renderer::upload() {
   bricks_ = gl::Buffer(std::span<const BrickRecord>(scene_.bricks));
   phases_ = gl::Buffer(std::span<const float>(scene_.phases));
   lit_ = gl::Buffer(std::span<const LitRecord>(scene_.lit));
-  const Counters none{};
+  const gl::MarchCounters none{};
   counters_ = gl::Buffer(&none, sizeof none);
   GLuint binding = 0;
   for (const gl::Buffer* buffer :
@@ -182,48 +96,23 @@ void Renderer::upload() {
     ice_ = gl::Buffer(std::span<const BrickRecord>(scene_.ice));
     ice_.bind(8);
   }
-  if (planet_) planet_->upload();
-}
-
-// One invocation for each sample that `list` names.
-void Renderer::light_pass(const gl::Program& program, SampleList list, int entries_each) {
-  glUseProgram(program.id());
-  glBindImageTexture(0, light_atlas_.id(), 0, GL_TRUE, 0, GL_READ_WRITE,
-                     sky_light() ? GL_RGBA16F : GL_R16F);
-  for (std::size_t tile = 0; tile < light_samples_->tiles(); tile += kTilesPerDispatch) {
-    const std::size_t count = std::min(kTilesPerDispatch, light_samples_->tiles() - tile);
-    const std::vector<std::uint32_t> samples = ((*light_samples_).*list)(tile, count);
-    if (samples.empty()) continue;
-    const gl::Buffer buffer{std::span<const std::uint32_t>(samples)};
-    buffer.bind(kSampleBinding);
-    const std::size_t invocations = samples.size() / std::size_t(entries_each);
-    glDispatchCompute(GLuint((invocations + 63) / 64), 1, 1);
+  if (planet_) {
+    planet_->upload();
+    planet_->bind();
   }
-  phases_.bind(kSampleBinding);
-  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void Renderer::light() {
   if (scene_.lit.empty()) return;
-  using gl::LightSamples;
-  const std::string switches = defines(false);
-  gl::Program copy;
+  gl::LightPass pass(programs_, defines(false), light_atlas_, sky_light(), phases_);
+  std::optional<gl::LightSamples> samples;
   timed("sun depth", [&] {
-    light_samples_.emplace(forest_, request_.march_all_light);
-    spared_light_ = light_samples_->spared_share();
-    copy = gl::compile("light_extend", nepho_shader_light_extend, switches);
-    light_pass(gl::compile("light_sun", nepho_shader_light_sun, switches), &LightSamples::owned);
-    light_pass(copy, &LightSamples::shared, 2);
+    samples.emplace(forest_, request_.march_all_light);
+    spared_light_ = samples->spared_share();
+    pass.sun_depth(*samples);
   });
-  if (sky_light())
-    timed("sky visibility", [&] {
-      light_pass(gl::compile("light_sky", nepho_shader_light_sky, switches), &LightSamples::coarse);
-      light_pass(copy, &LightSamples::shared_coarse, 2);
-      light_pass(gl::compile("light_fill", nepho_shader_light_fill, switches),
-                 &LightSamples::needed);
-    });
-  timed("light of clear samples", [&] { light_pass(copy, &LightSamples::pairs, 2); });
-  light_samples_.reset();
+  if (sky_light()) timed("sky visibility", [&] { pass.sky_visibility(*samples); });
+  timed("light of clear samples", [&] { pass.clear_samples(*samples); });
 }
 
 // The light tiles, out of their texture.
@@ -253,34 +142,20 @@ void Renderer::keep_lights() {
 }
 
 void Renderer::view() {
-  const gl::Program program = gl::compile("view", nepho_shader_view, defines(true));
+  const gl::Program& program = programs_.get("view", nepho_shader_view, defines(true));
   view_report_ = gl::march_view(request_, forest_, program, values_);
 }
 
 void Renderer::ground() {
-  const gl::Program program = gl::compile("ground", nepho_shader_ground, defines(false));
+  const gl::Program& program = programs_.get("ground", nepho_shader_ground, defines(false));
   ground_report_ =
       gl::light_ground(request_, forest_, scene_.frame, planet_->scene(), program, values_);
-}
-
-void Renderer::make_image() {
-  HdrImage& image = result_.image;
-  image.width = request_.settings.width;
-  image.height = request_.settings.height;
-  const std::size_t pixels = values_.seen.size();
-  image.rgb.resize(3 * pixels);
-  image.optical_depth.resize(pixels);
-  for (std::size_t p = 0; p < pixels; ++p) {
-    for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * p + c] = values_.seen[p][c];
-    image.optical_depth[p] = values_.seen[p][3];
-  }
-  values_ = {};
 }
 
 // llvmpipe ends all loops of an invocation after 65535 iterations: a picture that lost some is
 // refused, not shown.
 void Renderer::read_counters() {
-  Counters counters;
+  gl::MarchCounters counters;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glGetNamedBufferSubData(counters_.id(), 0, sizeof counters, &counters);
   result_.report.samples = {double(counters.rays), double(counters.extinction_samples),
@@ -309,16 +184,16 @@ void Renderer::report() {
       line += c;
     }
   }
-  if (parabolas())
+  if (gl::uses_parabolas(request_, scene_))
     report.left_out.push_back(
         "curves of third order within leaves: predicted to move samples by less than " +
-        std::to_string(parabola_error_cells(scene_.widest_leaf_rad)) + " voxels");
+        std::to_string(gl::parabola_error_cells(scene_)) + " voxels");
   const auto left_out = [&](const char* format, auto... numbers) {
     char sentence[200];
     std::snprintf(sentence, sizeof sentence, format, numbers...);
     report.left_out.push_back(sentence);
   };
-  if (!texels8() && !scene_.bricks.empty())
+  if (!gl::reads_texels8(request_.settings) && !scene_.bricks.empty())
     left_out(
         "exact look-ups: filtered, predicted to move extinction by less than %.2g %% of its cell's "
         "range",
@@ -384,17 +259,24 @@ RenderResult Renderer::run() {
     forest_ = build_forest(request_.volumes, gl::refinement_of(request_));
     scene_ = gl::make_gpu_scene(request_, forest_);
     if (request_.planet) planet_.emplace(request_, forest_);
-    scene_.frame.least_transmittance =
-        exact() ? kLeastTransmittanceExact : least_transmittance(request_.settings);
+    scene_.frame.least_transmittance = gl::least_transmittance(request_.settings);
   });
   timed("upload", [&] { upload(); });
   light();
   if (planet_ && planet_->scene().sun_map)
-    timed("sun map", [&] { planet_->draw_sun_map(defines(false)); });
-  if (planet_) timed("surface", [&] { values_.met = planet_->ground_distances(defines(false)); });
+    timed("sun map", [&] {
+      for (int part = 0; part < planet_->sun_map_parts(); ++part)
+        planet_->draw_sun_map_part(programs_, defines(false), part);
+    });
+  if (planet_)
+    timed("surface", [&] {
+      values_.met = planet_->ground_distances(programs_, defines(false), request_.settings.width,
+                                              request_.settings.height);
+    });
   timed("view", [&] { view(); });
   if (planet_) timed("ground", [&] { ground(); });
-  make_image();
+  result_.image = gl::picture_of(values_, request_.settings.width, request_.settings.height);
+  values_ = {};
   read_counters();
   if (request_.keep_lights) keep_lights();
   if (request_.settings.probe_pixels > 0)

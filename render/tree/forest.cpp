@@ -24,6 +24,7 @@ constexpr double kDeviations = 4;
 // Tolerances that noise counts in full from. A depth of 0.1 by default: with 1, blocks of unlike
 // levels showed in cirrus.
 constexpr double kStrong = 10;
+constexpr double kHold = 1.5;  // a node that was split counts so much more
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
 
 struct Counts {
@@ -106,7 +107,8 @@ class Refiner {
   TreeNode leaf(std::uint32_t volume, NodeKey key, const NodeSummary& summary) const {
     const VolumeInfo& info = forest_.volumes[volume].source->info();
     TreeNode node = leaf_from(key, summary, !has_ice(info));
-    node.seen = node.kind == NodeKind::kEmpty || metric_.seen(info, key);
+    node.seen =
+        node.kind == NodeKind::kEmpty || refinement_.light_unseen || metric_.seen(info, key);
     return node;
   }
 
@@ -151,12 +153,17 @@ class Refiner {
         summary.constant || nothing_below || !(summary.error_bound_per_m > 0))
       return;
     const ViewMetric::NodeView view = metric_.view(info, key);
-    const double error = depth_error(info, summary, view);
+    double hold = refinement_.was_split && refinement_.was_split(volume, key) ? kHold : 1;
+#if defined(NEPHO_MUTANT_FOREST_HOLD)
+    hold = 1;
+#endif
+    const double error = hold * depth_error(info, summary, view);
     const double tolerance = refinement_.settings.tolerance;
     const double strong = info.refine_by_variance ? kStrong * tolerance : 1;
-    const double priority = view.voxel_pixels * -std::expm1(-error / strong);
+    const double voxel_pixels = hold * view.voxel_pixels;
+    const double priority = voxel_pixels * -std::expm1(-error / strong);
     // Faint voxels may be larger, where all that is known of them is what they are likely to hide.
-    const double pixels = info.refine_by_variance ? priority : view.voxel_pixels;
+    const double pixels = info.refine_by_variance ? priority : voxel_pixels;
     if (pixels > refinement_.settings.pixels_per_voxel && error > tolerance)
       queue_.insert({priority, volume, key, index});
   }

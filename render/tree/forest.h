@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -78,6 +79,11 @@ struct Refinement {
   RenderSettings settings;  // size, fov, pixels_per_voxel, max_level, budget_mib, tolerance
   TileCost cost;
   std::optional<glm::dvec3> to_sun = {};  // unit, ECEF; absent: any node off-screen may shadow
+  // For views that move. A node that was split stays so until its priority is a third below what
+  // splits a new one, so that trees do not change back and forth. And what the picture does not
+  // show has light as well: the next may.
+  std::function<bool(std::uint32_t volume, NodeKey key)> was_split = {};
+  bool light_unseen = false;
 };
 
 // A node is split while its voxels (on the axes that the split halves) are larger on the screen

@@ -24,6 +24,7 @@ check 'ingest/sources/netcdf|tests/netcdf' 'find_package\(netCDF' '(netcdf|hdf5)
 check 'ingest/sources/grib|tests/grib' 'find_package\(eccodes' 'eccodes\.h'
 check 'ingest/sources/gdal|tests/gdal' 'find_path\(NEPHO_GDAL' '(gdal|ogr|cpl)_[a-z_]*\.h'
 check 'tools/image/oiio' 'find_(package|path)\(.*OpenImageIO' 'OpenImageIO/'
+check 'tools/view/window' 'find_package\(glfw3|pkg_check_modules\(IMGUI' '(GLFW/|imgui|backends/imgui)'
 check 'ingest/geo|tests' 'find_package\(GeographicLib' 'GeographicLib/'
 check 'ingest/geo' 'find_package\(PROJ' 'proj\.h'
 check 'tools/sun' 'find_path\(LIBNOVA' 'libnova/'

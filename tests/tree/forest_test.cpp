@@ -345,6 +345,33 @@ TEST(Forest, AFailingSourceIsReportedInItsOwnWords) {
   }
 }
 
+// A view that moves back a little keeps what it had; far away it lets go.
+TEST(Forest, SplitsAreHeldWhileTheViewMoves) {
+  Refinement near = refinement(64);
+  near.camera.eye_m.y = -700;
+  near.settings.pixels_per_voxel = 16;
+  const Forest first = build(near);
+  const auto count = [](const Forest& forest) {
+    std::size_t nodes = 0;
+    for (const VolumeTree& tree : forest.volumes) nodes += tree.nodes.size();
+    return nodes;
+  };
+  std::set<std::pair<std::uint32_t, NodeKey>> split;
+  for (std::uint32_t v = 0; v < first.volumes.size(); ++v)
+    for (const TreeNode& node : first.volumes[v].nodes)
+      if (node.kind == NodeKind::kInner) split.insert({v, node.key});
+  const auto at = [&](double y, bool held) {
+    Refinement r = near;
+    r.camera.eye_m.y = y;
+    if (held) r.was_split = [&](std::uint32_t v, NodeKey key) { return split.contains({v, key}); };
+    return count(build(r));
+  };
+  ASSERT_LT(at(-1000, false), count(first));
+  EXPECT_EQ(at(-750, true), count(first));
+  EXPECT_GT(at(-1000, true), at(-1000, false));
+  EXPECT_EQ(at(-40000, true), at(-40000, false));
+}
+
 TEST(Forest, EachBrickIsReadOnce) {
   const Failing source(true);
   const RenderVolume volume = volume_of(source);

@@ -50,10 +50,16 @@ struct BenchOptions {
   std::optional<std::string> size, repeats, spp, exact_orders, host_mib, finest_step, terrain;
 };
 
+struct ViewOptions {
+  RenderOptions render;  // inputs (none: the procedural planet), camera, quality, data
+  std::optional<std::string> frames, path, record, bench, screenshot, coarse;
+};
+
 // Each throws Error for what a user can cause, and prints its result on standard output.
 void render_command(const RenderOptions& options);
 void info_command(const InfoOptions& options);
 void compare_command(const CompareOptions& options);
 void bench_command(const BenchOptions& options);
+void view_command(const ViewOptions& options);
 
 }  // namespace nepho

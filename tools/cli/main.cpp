@@ -31,6 +31,8 @@ constexpr const char* kExamples = R"(Examples:
   nephoscope render wrfout_d01.nc --sun 2005-08-28T23:00Z --no-planet -o evening.png
   nephoscope render scene.json --target-error 1% -o fine.exr   the settings are chosen, and said
   nephoscope render smoke.png --engine reference --noise 1% -o true.exr   the same, path traced
+  nephoscope view                                        a window: fly over the procedural planet
+  nephoscope view wrfout_d01.nc                          through a forecast; drop files to open them
   nephoscope info smoke_0042.vdb                         what is in the file, what is assumed
   nephoscope render les.nc --names ourmodel.names -o les.png   what its variables are (docs/names.md)
   nephoscope info wrfout_d01.nc --check                  and how well the bricks hold it
@@ -93,6 +95,15 @@ void add_raster_options(CLI::App& command, RasterWords& o) {
 }
 
 constexpr const char* kTerrain = "heights of ground, such as dem.tif: the planet's surface";
+
+void add_drawn_data_options(CLI::App& command, RenderOptions& o) {
+  command.add_option("--fps", o.fps, "frames per second of a sequence (24)")->group("Data");
+  command.add_flag("--force", o.force, "draw values that no cloud has (NetCDF, GRIB)")
+      ->group("Data");
+  command.add_option("--region", o.region, kRegion)->group("Data");
+  command.add_option("--terrain", o.terrain, kTerrain)->group("Data");
+  add_raster_options(command, o.raster);
+}
 
 void add_camera_options(CLI::App& command, RenderOptions& o) {
   const char* group = "Camera and light";
@@ -210,6 +221,20 @@ void add_bench_options(CLI::App& command, BenchOptions& o) {
                      "voxels, of what steps are measured against (a quarter of the finest step)");
 }
 
+void add_view_options(CLI::App& command, ViewOptions& o) {
+  CLI::Option* frames =
+      command.add_option("--frames", o.frames, "end after so many, and say how long they took");
+  CLI::Option* path =
+      command.add_option("--path", o.path, "fly along what --record wrote, and end")
+          ->excludes(frames);
+  command.add_option("--record", o.record, "write the flight to this file")->excludes(path);
+  command.add_option("--bench", o.bench, "times of all passes, median and worst: .csv or .json");
+  command.add_option("--screenshot", o.screenshot, "at the end, a picture at full quality");
+  command.add_option(
+      "--coarse", o.coarse,
+      "1, 2, 4 or 8: in motion, every Nth pixel of the window (as the device can bear)");
+}
+
 // A value given twice is a bad value; CLI11 calls it the same as a missing one.
 void refuse_repeated(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands())
@@ -236,15 +261,23 @@ int run(int argc, char** argv) {
   add_camera_options(*draw, render);
   add_data_options(*draw, render.grid, render.names, render.up, render.metres_per_unit,
                    render.density_scale, render.frame);
-  draw->add_option("--fps", render.fps, "frames per second of a sequence (24)")->group("Data");
-  draw->add_flag("--force", render.force, "draw values that no cloud has (NetCDF, GRIB)")
-      ->group("Data");
-  draw->add_option("--region", render.region, kRegion)->group("Data");
-  draw->add_option("--terrain", render.terrain, kTerrain)->group("Data");
-  add_raster_options(*draw, render.raster);
+  add_drawn_data_options(*draw, render);
   draw->add_flag("--explain-macros", render.explain_macros, "")->group("");
   draw->footer(kExamples);
   draw->callback([&] { render_command(render); });
+
+  ViewOptions view;
+  CLI::App* fly = app.add_subcommand("view", "a window to fly through a scene");
+  fly->add_option("INPUT", view.render.inputs,
+                  "SCENE.json, PICTURE, or data FILES; none: the procedural planet");
+  add_view_options(*fly, view);
+  add_quality_options(*fly, view.render);
+  add_camera_options(*fly, view.render);
+  add_data_options(*fly, view.render.grid, view.render.names, view.render.up,
+                   view.render.metres_per_unit, view.render.density_scale, view.render.frame);
+  add_drawn_data_options(*fly, view.render);
+  fly->footer(kExamples);
+  fly->callback([&] { view_command(view); });
 
   InfoOptions info;
   CLI::App* tell = app.add_subcommand("info", "what is in a file, a scene or a picture");

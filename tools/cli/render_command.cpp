@@ -4,16 +4,14 @@
 #include "cli/commands.h"
 #include "cli/reference_picture.h"
 #include "cli/report.h"
+#include "cli/saved_picture.h"
 #include "cli/scene_input.h"
 #include "cli/target_picture.h"
 #include "common/gl_context.h"
 #include "common/open_scene.h"
 #include "common/output_file.h"
-#include "common/planet_scene.h"
 #include "core/error.h"
 #include "core/log.h"
-#include "image/tone.h"
-#include "scene/scene_file.h"
 
 namespace nepho {
 namespace {
@@ -37,27 +35,6 @@ fs::path output_of(const RenderOptions& options, const PictureFiles& pictures) {
   for (const std::string& input : options.inputs)
     if (fs::equivalent(path, input, ignored)) return stem + "-again" + path.extension().string();
   return path;
-}
-
-// More than any of the formats needs.
-std::uintmax_t largest_size(const RenderSettings& settings, PictureFormat format) {
-  const auto pixels = std::uintmax_t(settings.width) * std::uintmax_t(settings.height);
-  return pixels * (format == PictureFormat::kExr ? 17 : is_linear(format) ? 13 : 4) + (64u << 10);
-}
-
-FloatImage linear_image(const HdrImage& picture) {
-  FloatImage out(picture.width, picture.height, 4);
-  for (std::size_t p = 0; p < out.count(); ++p) {
-    for (std::size_t c = 0; c < 3; ++c) out.values[4 * p + c] = picture.rgb[3 * p + c];
-    out.values[4 * p + 3] = picture.optical_depth[p];
-  }
-  return out;
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
-  return text;
 }
 
 void print_result(const fs::path& output, const OpenedScene& opened,
@@ -114,29 +91,16 @@ void render_command(const RenderOptions& options) {
   }();
   const RenderResult& result = drawn.result;
   const FloatImage linear = linear_image(result.image);
-  const bool find_exposure = !opened.scene.exposure_ev;
-  const bool planet = opened.scene.planet.has_value();
-  if (find_exposure)
-    opened.scene.exposure_ev =
-        planet ? exposure_on_planet(linear, result.image.optical_depth, white_in_the_sun(opened))
-               : exposure_from(linear, result.image.optical_depth);
-  const glm::dvec3 white = display_white(opened.scene);
-  const ByteImage shown = is_linear(format)
-                              ? ByteImage()
-                              : to_display(linear, *opened.scene.exposure_ev, opened.scene.tone_map,
-                                           opened.scene.dither, white);
+  const bool find = !opened.scene.exposure_ev;
+  if (find) opened.scene.exposure_ev = find_exposure(opened, linear, result.image.optical_depth);
   const std::string error = march ? error_line(result.error) : drawn.error_line;
-  Metadata metadata{
-      {"nephoscope:scene", write_scene(opened.scene, fs::absolute(output).parent_path())},
-      {"nephoscope:error", error},
-      {"nephoscope:assumptions", joined(opened.assumptions)},
-      {"nephoscope:version", NEPHO_VERSION}};
+  Metadata metadata = metadata_of(opened, output, error);
   std::vector<std::string> said{error};
   if (!target.empty()) metadata["nephoscope:target"] = target, said.push_back(target);
-  pictures.write(file.temporary(), format, shown, linear, metadata);
+  write_picture(pictures, file.temporary(), format, opened, linear, metadata);
   file.commit();
   libraries.picture_written = mapped_libraries();
-  print_result(output, opened, said, find_exposure);
+  print_result(output, opened, said, find);
   if (options.explain || options.explain_all)
     std::printf("%s", explanation(opened, result, context ? context->description() : "none",
                                   libraries, options.explain_all)

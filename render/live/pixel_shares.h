@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "renderer.h"
+#include "shaders/frame.layout.h"
+
+namespace nepho {
+
+// A picture that is marched in shares: each is every n'th pixel of rows and columns, as a small
+// picture of its own, and n^2 of them are the whole. n is a power of two.
+class PixelShares {
+ public:
+  // Begins anew. Width and height are multiples of `each`.
+  void begin(int each, int width, int height);
+  int each() const { return each_; }
+  bool whole() const { return done_ == int(order_.size()); }
+  // Of the next share: its first pixel. Those in between come before their neighbours (Bayer 1973).
+  std::array<int, 2> offset() const { return order_[std::size_t(done_)]; }
+  void add(const HdrImage& share);
+  // As many pixels as there are; the first share alone is small, later the others are the nearest
+  // ones of their block.
+  HdrImage picture() const;
+
+ private:
+  std::vector<std::array<int, 2>> order_;
+  int each_ = 1, done_ = 0;
+  HdrImage first_, image_;
+};
+
+// Of a frame of `frame`'s size: moved so that its pixels are those of a picture `each` times as
+// wide, beginning with `offset`.
+void shift_to_share(FrameData& frame, int each, const std::array<int, 2>& offset);
+
+}  // namespace nepho

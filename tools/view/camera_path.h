@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "renderer.h"
+#include "scene/scene.h"
+
+namespace nepho {
+
+// A flight as it was flown, one camera a frame: JSON, ECEF metres, the same bits when it is read.
+struct CameraPath {
+  std::vector<Camera> cameras;
+};
+CameraPath read_camera_path(const std::filesystem::path& file);  // throws Error
+void write_camera_path(const std::filesystem::path& file, const CameraPath& path);
+
+// What the frames of a flight cost.
+struct FrameTimes {
+  double gap_ms = 0;  // wall time since the frame before
+  std::vector<PassReport> passes;
+};
+// Of gaps, and of each pass's CPU time in ms: median and worst.
+struct PassTimes {
+  std::string name;
+  std::size_t frames = 0;
+  double median_ms = 0, worst_ms = 0;
+};
+std::vector<PassTimes> summarise(const std::vector<FrameTimes>& frames);
+// .csv or .json, by the ending; throws Error.
+void write_pass_times(const std::filesystem::path& file, const std::vector<PassTimes>& times);
+// "below 16 ms: 40, 33: 2, ..., longest block 80 ms".
+std::string gap_histogram(const std::vector<FrameTimes>& frames);
+
+}  // namespace nepho

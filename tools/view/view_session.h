@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/open_scene.h"
+#include "image/image.h"
+#include "live/live_renderer.h"
+#include "view/flight.h"
+#include "view/window_module.h"
+
+namespace nepho {
+
+// A scene that is open and flown through. Needs the OpenGL context that was current when it was
+// made; throws Error where the budget is too small.
+class ViewSession {
+ public:
+  // `coarse`: while something changes, a frame has every so many'th pixel of the window, 1, 2, 4 or
+  // 8; 0: as the device can bear.
+  ViewSession(OpenedScene opened, int coarse);
+
+  // What the user did, and what he changed in the panel that fill() was called for.
+  void act(const WindowInput& input, double seconds);
+  void apply(const Panel& panel);
+  void set_camera(const Camera& camera);  // replayed
+  // One step of streaming, and a new picture where there is one. True where it is new.
+  bool advance(int width, int height);
+
+  const ByteImage& picture() const { return picture_; }
+  const Camera& camera() const { return flight_.camera(); }
+  const LiveStatus& status() const { return status_; }
+  bool at_rest() const { return live_->at_rest() && live_->whole(); }
+  void fill(Panel& panel) const;
+  // The scene as it is seen now, to be drawn in this size. Its sources stay here.
+  OpenedScene as_seen(int width, int height) const;
+
+ private:
+  RenderRequest wanted(int width, int height) const;
+  LocalAxes axes() const;
+  void set_time(int index);
+  void choose_coarseness(double frame_ms);
+
+  OpenedScene opened_;
+  std::vector<bool> shown_;  // by volume
+  int time_ = 0;
+  std::size_t timed_ = 0;  // the volume whose times the slider has
+  Flight flight_;
+  bool fixed_coarse_;
+  int coarse_, each_ = 1;     // of the next picture; of the one that is being made
+  int slow_ = 0, quick_ = 0;  // frames in a row
+  std::optional<double> exposure_ev_;
+  bool exposure_found_ = false;  // and may be found again in a finer tree
+  std::unique_ptr<LiveRenderer> live_;
+  LiveStatus status_;
+  ByteImage picture_;
+  double frame_ms_ = 0;
+  bool show_again_ = false;  // the picture that is there, otherwise exposed
+  HdrImage frame_;
+};
+
+}  // namespace nepho

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace nepho {
+
+// What crosses to the run-time module that knows GLFW and Dear ImGui: the program opens it for
+// `view` only, and links neither. Built by the same compiler, as source modules are.
+
+inline constexpr std::uint32_t kWindowModuleVersion = 1;
+
+// What a user did since the last frame.
+struct WindowInput {
+  int width = 0, height = 0;  // of the window, pixels
+  bool close = false;
+  double right = 0, up = 0, forward = 0;  // keys held, -1 to 1 each
+  double faster = 1;                      // a factor, while shift or control is held
+  double turn_x = 0, turn_y = 0;          // pixels that the mouse was dragged, y downwards
+  double scroll = 0;                      // notches
+  bool screenshot = false, next_mode = false, reset = false;
+  std::vector<std::string> dropped;
+};
+
+// What the panel shows, and what it changes. `changed` is set where a user changed something.
+struct Panel {
+  std::string scene, message;
+  bool message_is_error = false;
+  std::vector<std::string> lines;  // passes, bricks, bytes
+  int mode = 0;                    // of flight: free, orbit, first person
+  double exposure_ev = 0, tolerance = 0.01, step_voxels = 0, pixels_per_voxel = 1;
+  bool fixed_step = false;
+  double sun_azimuth_deg = 0, sun_elevation_deg = 0;
+  struct Volume {
+    std::string name;
+    bool shown = true;
+  };
+  std::vector<Volume> volumes;
+  int time = 0, times = 1;
+  std::string time_text;
+  bool busy = false;  // bricks or light are still to come
+  bool changed = false;
+};
+
+class Window {
+ public:
+  virtual ~Window() = default;
+  virtual WindowInput poll() = 0;
+  // Draws a picture of 8-bit RGB over the whole window (none: black), the panel over it, and shows
+  // both.
+  virtual void show(const std::uint8_t* rgb, int width, int height, Panel& panel) = 0;
+  virtual std::string description() const = 0;  // of the OpenGL context
+};
+
+struct WindowModule {
+  std::uint32_t version;
+  // A window with a current OpenGL 4.5 core context, or null and a text: what failed, and what was
+  // found instead, by lines.
+  Window* (*open)(int width, int height, const char* title, char* what, std::size_t what_size,
+                  char* found, std::size_t found_size);
+};
+
+}  // namespace nepho
+
+// What the module exports: const nepho::WindowModule* nepho_window_module();
+extern "C" {
+using nepho_window_module_fn = const nepho::WindowModule*();
+}
