@@ -26,6 +26,10 @@ std::optional<PlanetGround> ground_of(const OpenedScene& opened) {
   const auto body = body_of(opened);
   if (!body) return std::nullopt;
   PlanetGround ground{*body, {}};
+  if (opened.terrain) {
+    ground.maps.push_back(opened.terrain);
+    return ground;
+  }
   for (const auto& source : opened.sources)
     if (source->info().surface) ground.maps.push_back(source->info().surface);
   return ground;
@@ -227,7 +231,7 @@ void ViewSession::fill(Panel& panel) const {
 }
 
 OpenedScene ViewSession::as_seen(int width, int height) const {
-  OpenedScene seen{opened_.scene, {}, opened_.request, opened_.assumptions};
+  OpenedScene seen{opened_.scene, {}, opened_.terrain, opened_.request, opened_.assumptions};
   RenderSettings& settings = seen.request.settings;
   settings.width = width;
   settings.height = height;
