@@ -51,6 +51,8 @@ Place place_at(float t_m) {
 #ifdef NEPHO_TERRAIN
   vec2 node = surface_node(t_m);
   vec2 here = surface_at(node);
+  // On a wall, where the map ends, as on its top: what is inside the ground sees no sun.
+  if (here.x > height_m + 1.0) place.point += dvec3(place.up) * double(here.x - height_m);
   place.height_m = here.x;
   place.water = here.y;
   // Slope over one cell: bilinear heights then have a continuous normal.

@@ -104,7 +104,12 @@ float terrain_distance(float begin_m, float end_m) {
       gap_low *= 0.5;
     }
   }
-  return clamp(low + (high - low) * gap_low / max(gap_low - gap_high, 1e-6), low, high);
+  float met_m = clamp(low + (high - low) * gap_low / max(gap_low - gap_high, 1e-6), low, high);
+  // At a wall, where the map ends, nothing lies between: before it is the sea, behind it the ground.
+#ifndef NEPHO_MUTANT_TORN_WALL
+  if (height_over_surface(met_m) > 1.0) met_m = high;
+#endif
+  return met_m;
 }
 #endif
 

@@ -179,6 +179,32 @@ TEST_F(PlanetRenderer, TerrainStandsWhereItsMapSays) {
   }
 }
 
+// The map's end is a wall of its ground over the sea, and no hole is in it.
+TEST_F(PlanetRenderer, AMapEndsInAWallOfLand) {
+  const Slab slab(15e3, 16e3, 100, 1e-9);
+  const auto map = ridge_map(0, 0, 1, 1000);
+  std::ranges::fill(map->height_m, 75.0f);
+  map->low_rad.y += 32.1e3 / kRadius_m;  // from 2.1 km north of the eye on
+  const DressedSource source(slab.source, [&](VolumeInfo& info) { info.surface = map; });
+  RenderRequest request = planet_request({&source});
+  request.planet->air.reset();
+  request.planet->ground.land_albedo = glm::dvec3(0.3);
+  request.settings.width = 48;
+  request.settings.height = 160;
+  request.sun.to_sun = sun_at(60, 180);
+  look(request, 700, -17, 10);
+  const HdrImage image = render(request).image;
+  int torn = 0, walls = 0;
+  for (int x = 0; x < image.width; ++x) {
+    int changes = 0;
+    const auto is_land = [&](int y) { return green_at(image, x, y) > 0.05; };
+    for (int y = 1; y < image.height; ++y) changes += is_land(y) != is_land(y - 1);
+    ++(changes == 1 ? walls : torn);
+  }
+  std::printf("measured: %d of %d columns of pixels have more than one edge\n", torn, image.width);
+  EXPECT_EQ(walls, image.width);
+}
+
 TEST_F(PlanetRenderer, AnEyeInPlacesThatAreNoneSeesFiniteLight) {
   const Slab slab(1000, 2000, 5000, 0.02);
   auto map = std::make_shared<SurfaceMap>();
