@@ -16,7 +16,6 @@ constexpr double kShare = 1;  // of the tolerance
 #endif
 constexpr float kStraightShare = 0.5f;
 constexpr double kRareShare = 0.05;  // of what one pixel may be off
-constexpr double kMiss = 2;  // of the tolerance: neighbours of what is further off are marched
 constexpr int kMissRounds = 2;
 constexpr std::uint32_t kCheckEach = 128;
 constexpr double kDarkShare = 0.1;     // of the mean: what is darker counts as that
@@ -144,15 +143,10 @@ void PixelPlan::for_each(const Places& places, const Do& act) {
 
 bool PixelPlan::forced(int x, int y, const Stage& stage) const {
   if (part_seen(at(x, y)) <= 0) return false;
-  if (edges_[at(x, y)] != 0) return true;
   const int tiles = (settings_.width + kStrideTile - 1) / kStrideTile;
   const auto tile = std::size_t(y / kStrideTile * tiles + x / kStrideTile);
   const PixelStrides& strides = settings_.strides;
-  const int stride = (stage.along_y ? strides.y : strides.x)[tile];
-  // Voxels that are just too fine are met by every other pixel too, as on a chessboard; what is off
-  // there has its neighbours marched.
-  if (2 * stride == stage.grid) return (x / stage.step_x + y / stage.step_y) % 2 == 0;
-  return stride < stage.grid;
+  return edges_[at(x, y)] != 0 || (stage.along_y ? strides.y : strides.x)[tile] < stage.grid;
 }
 
 bool PixelPlan::saves_little() const {
@@ -272,7 +266,7 @@ void PixelPlan::take(const PixelValues& marched, PixelValues& values) {
         check_squares_[std::size_t(stage_)] += change * change;
         ++checks_[std::size_t(stage_)];
       }
-      if (miss(values, p, seen, met) > kMiss * settings_.tolerance) missed_.push_back(p);
+      if (miss(values, p, seen, met) > kShare * settings_.tolerance) missed_.push_back(p);
     }
     values.seen[p] = seen;
     values.met[p] = met;

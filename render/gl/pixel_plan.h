@@ -34,10 +34,9 @@ float luminance(const PixelTexel& seen);
 // columns and then along rows, half way, and half way again until all are there, pixels are
 // interpolated through the four nearest, but marched where those bend by more than kShare of the
 // tolerance (second differences of radiance over luminance, and of transmittance), at edges of the
-// ground, and where the tree has voxels finer than the grid (every other one where voxels half as
-// fine would do). One in kCheckEach of the others is marched all the same; where one that is marched
-// is off from what it would have been interpolated to by twice the tolerance, its neighbours are
-// marched too.
+// ground, and where the tree has voxels finer than the grid. One in kCheckEach of the others is
+// marched all the same; where one that is marched is not what it would have been interpolated to,
+// its neighbours are marched too.
 //
 // No OpenGL here: the caller marches what next() names and puts the results in.
 class PixelPlan {
