@@ -162,9 +162,9 @@ TEST(Wrf, SizesAndKindsAreTheFiles) {
   const ForecastColumns r = by_radius->columns(0);
   EXPECT_NEAR(at(r, 2, 1, 1) / (content * droplet_extinction_m2_per_kg(12e-6)), 1, 2e-3);
   EXPECT_NEAR(at(r, 4, 3, 3) / (1e-5 * density(3) * ice_extinction_m2_per_kg(55e-6)), 1, 2e-3);
-  const auto said = by_radius->assumptions();
-  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& text) {
-    return text.find("Droplet radii are the file's, RE_CLOUD.") != std::string::npos;
+  const auto said = by_radius->recognised();
+  EXPECT_TRUE(std::ranges::any_of(said, [](const DataFacts::Recognised& r) {
+    return r.text.find("Droplet radii are the file's, RE_CLOUD.") != std::string::npos;
   }));
 }
 
