@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "forecast/conventions/names.h"
+#include "forecast/conventions/vertical.h"
 #include "units/parse_unit.h"
 
 namespace nepho::forecast {
@@ -194,7 +195,7 @@ void check_units(const UserNames& names, const DataFile& file) {
   }
 }
 
-// Of scalar points: CM1's up to release 19.
+// Of scalar points: CM1's up to release 19. Lengths only: IFS calls a geopotential z.
 void adopt_coordinates(DataFile& file) {
   for (int d = 0; d < int(file.dimensions().size()); ++d) {
     const auto along = [&](const FileVariable* v) {
@@ -202,7 +203,7 @@ void adopt_coordinates(DataFile& file) {
     };
     if (along(file.find(file.name(d)))) continue;
     for (const char* name : {"xh", "yh", "zh", "z"})
-      if (along(file.find(name))) {
+      if (along(file.find(name)) && unit_of(*file.find(name), kLength).fits) {
         file.rename_dimension(d, name);
         break;
       }
