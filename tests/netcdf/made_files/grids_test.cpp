@@ -41,6 +41,7 @@ std::vector<Case> covering() {
     for (const std::size_t turn : {0, 1})
       cases.push_back({grids[n % grids.size()], verticals[(n + 7 * turn) % verticals.size()],
                        turn == 0 ? "up" : "down"});
+  cases.push_back({"mpas", "ifs_halves", "up"});  // z is a geopotential of cells in a row
   return cases;
 }
 
