@@ -22,7 +22,8 @@ for scene in "$@"; do
   # Over its hills a path takes more than 2 ms, half of it to find where it meets the ground: none.
   [ $scene = forecast ] && paths=0
   case $scene in planet_*) host=32 ;; esac
-  [ $scene = planet_space ] && paths=2048
+  # What the light model needs, where it can be had in minutes.
+  case $scene in globe) paths=768 ;; planet_space) paths=2048 ;; esac
   build/release/bin/nephoscope bench "data-samples/scenes/$scene.json" --size $size \
     --sweep budget-mib=$budgets --sweep step=0.35,0.7,1.4 --sweep pixels-per-voxel=0.05 \
     --spp $paths --host-mib $host -o "$report/$scene"
