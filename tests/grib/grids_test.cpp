@@ -9,47 +9,10 @@
 #include <numeric>
 
 #include "accuracy_report.h"
-#include "grib_twin.h"
+#include "planted_cell.h"
 
 namespace nepho::grib::test {
 namespace {
-
-struct Case {
-  std::string name;
-  int edition;
-  std::size_t points;
-  Keys grid;
-  double cell_deg;                      // size of a cell
-  bool any_scan = true, placed = true;  // by ecCodes, too
-};
-
-constexpr int kNx = 12, kNy = 9;
-
-Keys lat_lon(const char* type, double step, double lat, double lon) {
-  return {{"gridType", type},
-          {"Ni", kNx},
-          {"Nj", kNy},
-          {"iDirectionIncrementInDegrees", step},
-          {"jDirectionIncrementInDegrees", step},
-          {"latitudeOfFirstGridPointInDegrees", lat},
-          {"longitudeOfFirstGridPointInDegrees", lon},
-          {"latitudeOfLastGridPointInDegrees", lat - step * (kNy - 1)},
-          {"longitudeOfLastGridPointInDegrees", std::fmod(lon + step * (kNx - 1), 360)}};
-}
-
-Keys with(Keys keys, const Keys& more) {
-  keys.insert(keys.end(), more.begin(), more.end());
-  return keys;
-}
-
-Keys map(const char* type, double lat, double lon, const Keys& more) {
-  return with({{"gridType", type},
-               {"Nx", kNx},
-               {"Ny", kNy},
-               {"latitudeOfFirstGridPointInDegrees", lat},
-               {"longitudeOfFirstGridPointInDegrees", lon}},
-              more);
-}
 
 std::vector<Case> cases() {
   std::vector<Case> all;
@@ -117,44 +80,6 @@ std::vector<Case> cases() {
   return all;
 }
 
-// Water in one point of the message, on three levels.
-struct Planted {
-  std::string path;
-  Made::Place place;
-};
-Planted plant(const Case& c, std::size_t at, const Keys& scan) {
-  Planted planted;
-  std::string bytes;
-  for (const double hPa : {900.0, 800.0, 700.0})
-    for (const char* name : {"clwmr", "t", "gh"}) {
-      Made made(c.edition, c.grid);
-      if (c.edition == 2) made.set({{"numberOfDataPoints", long(c.points)}});
-      made.set(scan);
-      made.set(parameter(c.edition, name)).set(isobaric(c.edition, hPa)).set(at_hour(c.edition, 0));
-      made.set({{"bitsPerValue", 16}});
-      std::vector<double> values(c.points, name[0] == 't'   ? GribTwin::temperature_K(hPa)
-                                           : name[0] == 'g' ? GribTwin::geopotential_height_m(hPa)
-                                                            : 0);
-      if (name[0] == 'c') {
-        values[at] = 1e-3;
-        made.values(values);
-        for (const Made::Place& p : c.placed ? made.places() : std::vector<Made::Place>{})
-          if (p.value > 5e-4) planted.place = p;
-      } else {
-        made.values(values);
-      }
-      bytes += made.bytes();
-    }
-  planted.path = write_bytes(c.name + ".grib", bytes);
-  return planted;
-}
-
-double distance_deg(double lat1, double lon1, double lat2, double lon2) {
-  const double d = std::numbers::pi / 180;
-  const double a = std::sin(0.5 * (lat1 - lat2) * d), b = std::sin(0.5 * (lon1 - lon2) * d);
-  return 2 / d * std::asin(std::sqrt(a * a + std::cos(lat1 * d) * std::cos(lat2 * d) * b * b));
-}
-
 // Snyder (1987), Map Projections: A Working Manual, 15-1 to 15-4 and 21-33, on a sphere: from a
 // place to m, without constants that cancel between two places.
 glm::dvec2 forward_m(const Case& c, double lat, double lon) {
@@ -192,22 +117,6 @@ double off_map_deg(const Case& c, glm::dvec2 place, std::size_t at, bool north, 
                                      key("longitudeOfFirstGridPointInDegrees"));
   const glm::dvec2 step(key("DxInMetres"), key("DyInMetres") * (north ? 1 : -1));
   return glm::distance(forward_m(c, place.x, place.y), first + glm::dvec2(i, j) * step) / 111195;
-}
-
-// Where the one column with cloud stands.
-glm::dvec2 column_place(const forecast::Forecast& forecast) {
-  const forecast::ForecastColumns c = forecast.columns(0);
-  int found = -1, count = 0;
-  for (int n = 0; n < c.nx * c.ny; ++n) {
-    double sum = 0;
-    for (int k = 0; k < c.nz; ++k) sum += double(c.extinction_per_m[std::size_t(n * c.nz + k)]);
-    if (sum > 1e-4) {
-      found = n;
-      ++count;
-    }
-  }
-  EXPECT_EQ(count, 1);
-  return forecast.grid(0)->lat_lon_deg(found % c.nx + 0.5, found / c.nx + 0.5);
 }
 
 TEST(GribGrids, OneCellStaysInItsPlace) {
@@ -346,89 +255,6 @@ TEST(GribGrids, ReducedRowsKeepTheirSums) {
   EXPECT_LT(worst, 1e-6);
   EXPECT_LT(west, 0.02);
   EXPECT_TRUE(says(file.assumptions(), "reduced grid"));
-}
-
-// WMO template 3.1: an angle of rotation counts meridians of the rotated system from further east.
-TEST(GribGrids, RotatedPolesTurn) {
-  const auto place = [](double turn_deg, double first_lon) {
-    Case c{
-        "turned" + std::to_string(int(turn_deg)), 2, kNx * kNy,
-        with(lat_lon("rotated_ll", 0.5, 3, first_lon), {{"latitudeOfSouthernPoleInDegrees", -39.25},
-                                                        {"longitudeOfSouthernPoleInDegrees", 18.0},
-                                                        {"angleOfRotationInDegrees", turn_deg}}),
-        0.5};
-    return column_place(*open({plant(c, 17, {{"iScansNegatively", 0}}).path}));
-  };
-  double worst = 0;
-  for (const double turn_deg : {20.0, -35.5}) {
-    const glm::dvec2 turned = place(turn_deg, 357.5),
-                     plain = place(0, std::fmod(357.5 + turn_deg, 360));
-    worst = std::max(worst, distance_deg(turned.x, turned.y, plain.x, plain.y));
-  }
-  nepho::test::report_accuracy("Forecasts in GRIB", "rotated poles that turn", worst, 1e-3, "deg");
-  EXPECT_LT(worst, 1e-3);
-}
-
-// From a satellite above 10 E: places by the formulas of CGMS 03, 4.4.3.2; on a sphere, and where
-// rows run south and east, also ecCodes's own (2.28 has no radius of an ellipsoid there).
-TEST(GribGrids, SatelliteViews) {
-  constexpr double kRadii = 6.610839, kEquator_m = 6371229, kPole_m = 6350000, kDisc = 400;
-  constexpr double kXp = 210.5, kYp = 190.25;
-  constexpr int kXo = 260, kYo = 120;
-  double worst = 0;
-  for (const bool sphere : {true, false})
-    for (const bool north : {false, true})
-      for (const bool west : {false, true}) {
-        const bool placed = sphere && !north && !west;
-        const Case c{"view",
-                     2,
-                     kNx * kNy,
-                     with(sphere ? Keys{{"gridType", "space_view"}, {"shapeOfTheEarth", 6}}
-                                 : Keys{{"gridType", "space_view"},
-                                        {"shapeOfTheEarth", 7},
-                                        {"scaleFactorOfEarthMajorAxis", 0},
-                                        {"scaledValueOfEarthMajorAxis", int(kEquator_m)},
-                                        {"scaleFactorOfEarthMinorAxis", 0},
-                                        {"scaledValueOfEarthMinorAxis", int(kPole_m)}},
-                          {{"Nx", kNx},
-                           {"Ny", kNy},
-                           {"latitudeOfSubSatellitePoint", 0},
-                           {"longitudeOfSubSatellitePoint", 10000000},
-                           {"dx", int(kDisc)},
-                           {"dy", int(kDisc)},
-                           {"Xp", int(kXp * 1000)},
-                           {"Yp", int(kYp * 1000)},
-                           {"orientationOfTheGrid", 0},
-                           {"Nr", int(kRadii * 1e6)},
-                           {"Xo", kXo},
-                           {"Yo", kYo}}),
-                     0.3,
-                     true,
-                     placed};
-        const std::size_t at = 3 * kNx + 7;
-        const Planted planted =
-            plant(c, at, {{"iScansNegatively", int(west)}, {"jScansPositively", int(north)}});
-        const glm::dvec2 place = column_place(*open({planted.path}));
-        // From the angles of view.
-        const double disc = 2 * std::asin(1 / kRadii), flat = sphere ? 1 : kPole_m / kEquator_m;
-        const double x = (7 + kXo - kXp) * disc / kDisc * (west ? -1 : 1);
-        const double y = (3 + kYo - kYp) * disc / kDisc * flat * (north ? 1 : -1);
-        const double a = 1 + (1 / (flat * flat) - 1) * std::sin(y) * std::sin(y),
-                     b = kRadii * std::cos(x) * std::cos(y);
-        const double s = (b - std::sqrt(b * b - a * (kRadii * kRadii - 1))) / a;
-        const double s1 = kRadii - s * std::cos(x) * std::cos(y),
-                     s2 = s * std::sin(x) * std::cos(y), s3 = s * std::sin(y);
-        const double d = 180 / std::numbers::pi;
-        worst = std::max(worst, distance_deg(place.x, place.y,
-                                             d * std::atan(s3 / std::hypot(s1, s2) / (flat * flat)),
-                                             10 + d * std::atan(s2 / s1)));
-        if (placed)
-          worst = std::max(worst, distance_deg(place.x, place.y, planted.place.latitude,
-                                               planted.place.longitude));
-      }
-  nepho::test::report_accuracy("Forecasts in GRIB", "views of a satellite against CGMS and ecCodes",
-                               worst, 1e-3, "deg");
-  EXPECT_LT(worst, 1e-3);
 }
 
 // The same field on two grids of the same places, and on others.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct CfTwin : nepho::test::TwinWeather {
   double water_scale = 1, level_scale = 1;  // written = SI times this (levels: hPa times this)
   int type = NC_FLOAT, format = NC_NETCDF4;
   bool packed = false, with_time = true;
+  // Groups ("model/") of the dimensions, of the coordinate variables, of the fields.
+  std::string dimensions_in, axes_in, fields_in;
+  // What else to write into the file, before its variables.
+  std::function<void(NcWriter&)> more = [](NcWriter&) {};
   double fill = NAN;  // water where the column is at index 0 of both axes
 
   template <class Value>
@@ -52,25 +57,26 @@ struct CfTwin : nepho::test::TwinWeather {
   std::string write(const std::string& name) const {
     const std::string path = folder() / (name + ".nc");
     NcWriter nc(path, format);
-    nc.dimension("time", hours.size());
-    nc.dimension("level", pressure_hPa.size());
-    nc.dimension("lat", latitude.size());
-    nc.dimension("lon", longitude.size());
-    if (with_time) nc.variable("time", NC_DOUBLE, {"time"}, hours, {{"units", time_units}});
+    const std::string time = dimensions_in + "time", level = dimensions_in + "level",
+                      lat = dimensions_in + "lat", lon = dimensions_in + "lon";
+    nc.dimension(time, hours.size());
+    nc.dimension(level, pressure_hPa.size());
+    nc.dimension(lat, latitude.size());
+    nc.dimension(lon, longitude.size());
+    more(nc);
+    if (with_time) nc.variable(axes_in + "time", NC_DOUBLE, {time}, hours, {{"units", time_units}});
     std::vector<double> levels = pressure_hPa;
     for (double& p : levels) p *= level_scale;
-    nc.variable("level", NC_DOUBLE, {"level"}, levels, {{"units", level_units}});
-    nc.variable("lat", NC_DOUBLE, {"lat"}, latitude, {{"units", "degrees_north"}});
-    nc.variable("lon", NC_DOUBLE, {"lon"}, longitude, {{"units", "degrees_east"}});
+    nc.variable(axes_in + "level", NC_DOUBLE, {level}, levels, {{"units", level_units}});
+    nc.variable(axes_in + "lat", NC_DOUBLE, {lat}, latitude, {{"units", "degrees_north"}});
+    nc.variable(axes_in + "lon", NC_DOUBLE, {lon}, longitude, {{"units", "degrees_east"}});
     std::vector<std::string> dimensions;
     for (const char axis : order)
       if (axis != 't' || with_time)
-        dimensions.push_back(axis == 't'   ? "time"
-                             : axis == 'z' ? "level"
-                             : axis == 'y' ? "lat"
-                                           : "lon");
+        dimensions.push_back(axis == 't' ? time : axis == 'z' ? level : axis == 'y' ? lat : lon);
     const auto put = [&](const char* variable, const char* units, auto value) {
-      nc.variable(variable, NC_FLOAT, dimensions, field(value), {{"units", std::string(units)}});
+      nc.variable(fields_in + variable, NC_FLOAT, dimensions, field(value),
+                  {{"units", std::string(units)}});
     };
     put("t", "K", [&](auto, auto z, auto, auto) { return temperature_K(pressure_hPa[z]); });
     put("gh", "gpm",
@@ -90,7 +96,8 @@ struct CfTwin : nepho::test::TwinWeather {
     } else if (!std::isnan(fill)) {
       attributes["_FillValue"] = fill;
     }
-    nc.variable(water_name, packed ? NC_SHORT : type, dimensions, water_values, attributes);
+    nc.variable(fields_in + water_name, packed ? NC_SHORT : type, dimensions, water_values,
+                attributes);
     return path;
   }
 };

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 #include <random>
 
 #include "accuracy_report.h"
@@ -14,6 +13,29 @@
 
 namespace nepho::test {
 namespace {
+
+// Against looking at all of them.
+TEST(NearestPlaces, AreTheNearest) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const auto any = [&] {
+    return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+  };
+  std::vector<glm::dvec3> places;
+  for (int n = 0; n < 1000; ++n) places.push_back(any());
+  const NearestPlaces tree(places);
+  for (int n = 0; n < 300; ++n) {
+    const glm::dvec3 to = any();
+    std::vector<std::uint32_t> all(places.size());
+    for (std::uint32_t at = 0; at < all.size(); ++at) all[at] = at;
+    std::ranges::sort(all, {}, [&](std::uint32_t at) { return glm::length(places[at] - to); });
+    all.resize(6);
+    EXPECT_EQ(tree.nearest(to, 6), all);
+  }
+  EXPECT_EQ(tree.nearest(any(), 5000).size(), 1000u);
+}
+
+#ifdef NEPHO_HAS_PROJ
 
 // WGS 84's half axes.
 MapSpec on_earth(MapKind kind) {
@@ -63,19 +85,13 @@ TEST(Maps, TwoLibrariesAgree) {
   double worst_deg = 0, back_m = 0;
   for (const Pair& pair : pairs()) {
     const MapProjection ours(pair.ours);
-    std::optional<MapProjection> theirs;
-    try {
-      theirs = proj_map(pair.theirs, "test");
-    } catch (const Error& e) {
-      if (std::string(e.what()).find("no PROJ") == std::string::npos) throw;
-      GTEST_SKIP() << "this build has no PROJ";
-    }
+    const MapProjection theirs = proj_map(pair.theirs, "test");
     for (int n = 0; n < 200; ++n) {
       const glm::dvec2 m = {far_m(random), far_m(random)};
       const glm::dvec2 place = ours.lat_lon_deg(m);
-      worst_deg = std::max(worst_deg, apart_deg(place, theirs->lat_lon_deg(m)));
+      worst_deg = std::max(worst_deg, apart_deg(place, theirs.lat_lon_deg(m)));
       back_m = std::max(
-          {back_m, glm::length(ours.map_m(place) - m), glm::length(theirs->map_m(place) - m)});
+          {back_m, glm::length(ours.map_m(place) - m), glm::length(theirs.map_m(place) - m)});
     }
   }
   report_accuracy("grids", "maps by GeographicLib against PROJ, ellipsoid", worst_deg, 1e-8, "deg");
@@ -84,39 +100,12 @@ TEST(Maps, TwoLibrariesAgree) {
 }
 
 TEST(Maps, OffTheMapIsNoPlace) {
-  try {
-    const MapProjection disc =
-        proj_map("+proj=geos +h=35786023 +lon_0=0 +a=6378137 +b=6356752", "");
-    EXPECT_TRUE(std::isnan(disc.lat_lon_deg({8e6, 8e6}).x));
-    EXPECT_TRUE(std::isnan(disc.map_m({0, 120}).x));
-    EXPECT_NEAR(disc.lat_lon_deg({0, 0}).x, 0, 1e-12);
-    EXPECT_THROW(proj_map("+proj=nothing", "test"), Error);
-    EXPECT_THROW(proj_map("", "test"), Error);
-  } catch (const Error& e) {
-    if (std::string(e.what()).find("no PROJ") == std::string::npos) throw;
-    GTEST_SKIP() << "this build has no PROJ";
-  }
-}
-
-// Against looking at all of them.
-TEST(NearestPlaces, AreTheNearest) {
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal;
-  const auto any = [&] {
-    return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-  };
-  std::vector<glm::dvec3> places;
-  for (int n = 0; n < 1000; ++n) places.push_back(any());
-  const NearestPlaces tree(places);
-  for (int n = 0; n < 300; ++n) {
-    const glm::dvec3 to = any();
-    std::vector<std::uint32_t> all(places.size());
-    for (std::uint32_t at = 0; at < all.size(); ++at) all[at] = at;
-    std::ranges::sort(all, {}, [&](std::uint32_t at) { return glm::length(places[at] - to); });
-    all.resize(6);
-    EXPECT_EQ(tree.nearest(to, 6), all);
-  }
-  EXPECT_EQ(tree.nearest(any(), 5000).size(), 1000u);
+  const MapProjection disc = proj_map("+proj=geos +h=35786023 +lon_0=0 +a=6378137 +b=6356752", "");
+  EXPECT_TRUE(std::isnan(disc.lat_lon_deg({8e6, 8e6}).x));
+  EXPECT_TRUE(std::isnan(disc.map_m({0, 120}).x));
+  EXPECT_NEAR(disc.lat_lon_deg({0, 0}).x, 0, 1e-12);
+  EXPECT_THROW(proj_map("+proj=nothing", "test"), Error);
+  EXPECT_THROW(proj_map("", "test"), Error);
 }
 
 // The values that come with the model (Lemoine et al. 1998, NASA/TP-1998-206861: OUTPUT.DAT of its
@@ -127,18 +116,23 @@ TEST(Geoid, Egm96AtItsOwnTestPoints) {
   } points[] = {{38.6281550, 269.7791550, -31.628}, {-14.6212170, 305.0211140, -2.969},
                 {46.8743190, 102.4487290, -43.575}, {-23.6174460, 133.8747120, 15.871},
                 {38.6254730, 359.9995000, 50.066},  {-0.4667440, 0.0023000, 17.329}};
-  GeoidHeight geoid;
-  try {
-    geoid = egm96_m();
-  } catch (const Error& e) {
-    GTEST_SKIP() << e.what();  // no PROJ, or no grid of it
-  }
+  const GeoidHeight geoid = egm96_m();
   double worst = 0;
   for (const auto& p : points)
     worst = std::max(worst, std::abs(geoid({p.lat, p.lon}) - p.height_m));
-  report_accuracy("grids", "EGM96 at its own test points, by a grid of 15 minutes", worst, 0.5, "m");
+  report_accuracy("grids", "EGM96 at its own test points, by a grid of 15 minutes", worst, 0.5,
+                  "m");
   EXPECT_LT(worst, 0.5);
 }
+
+#else
+
+TEST(Maps, WithoutProjAreRefused) {
+  EXPECT_THROW(proj_map("+proj=longlat", "test"), Error);
+  EXPECT_THROW(egm96_m(), Error);
+}
+
+#endif
 
 }  // namespace
 }  // namespace nepho::test

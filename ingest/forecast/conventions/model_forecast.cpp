@@ -11,6 +11,7 @@
 #include "forecast/conventions/model.h"
 #include "forecast/conventions/off_planet.h"
 #include "forecast/conventions/particle_sizes.h"
+#include "forecast/conventions/said.h"
 #include "forecast/conventions/vertical.h"
 #include "forecast/files/time_order.h"
 #include "forecast/water/air.h"
@@ -96,9 +97,6 @@ class ModelForecast : public Forecast {
   void order_times();
   void open_first_water();
   void measure_heights();
-  void say(const WaterStatistics& statistics);
-  void say_names();
-  void say_optics(const WaterStatistics& statistics);
   void check(const WaterStatistics& statistics) const;
   CloudSetting setting(std::size_t index, const HorizontalGrid& grid) const;
   Loaded load(std::size_t time) const;
@@ -274,7 +272,7 @@ void ModelForecast::open_first_water() {
                              " fill values only and " + (time == 1 ? "is" : "are") +
                              " clear: up to " + time_text(model_.utc_ns[index_[time - 1]]) + ".");
     radius_m_ = loaded.statistics.radius_m();
-    say(loaded.statistics);
+    say(loaded.statistics, model_);
     first_ = std::move(loaded);
     return;
   }
@@ -289,71 +287,6 @@ void ModelForecast::open_first_water() {
   throw Error({"all values of the cloud water are missing",
                model_.file->path() + " [" + names + "]", "numbers",
                "fill values or NaN at all times", "write the file again"});
-}
-
-// What was read under names that no file stands behind.
-void ModelForecast::say_names() {
-  const auto note = [&](const FileVariable* variable, Quantity quantity) {
-    if (!variable) return;
-    if (std::string text = untested(*model_.file, quantity, *variable); !text.empty())
-      model_.assumptions.push_back(std::move(text));
-  };
-  for (const WaterVariable& w : model_.water)
-    if (w.row) note(w.variable, w.row->quantity);
-  note(model_.cloud_fraction, names::kCloudFraction);
-  note(model_.droplet_number, names::kDropletNumber);
-  note(model_.droplet_radius, names::kDropletRadius);
-  note(model_.ice_radius, names::kIceRadius);
-  if (const std::string wrote = model_of_file(*model_.file); !wrote.empty())
-    model_.recognised.push_back({"names", "those of " + wrote});
-}
-
-// How water became extinction: water.h has the equations.
-void ModelForecast::say_optics(const WaterStatistics& s) {
-  const auto has = [&](auto&& wanted) { return std::ranges::any_of(model_.water, wanted); };
-  auto& to = model_.recognised;
-  for (SaidOfSizes& said : said_of_sizes(model_, s)) to.push_back({said.what, std::move(said.how)});
-  if (has([](const WaterVariable& w) { return w.species == Species::kCloudWater; }))
-    to.push_back({"mean effective radius", text("%.3g um, of droplets", radius_m_ * 1e6)});
-  for (const WaterVariable& w : model_.water)
-    if (w.freezes_below_K > 0) {
-      const double all_ice_degC = w.freezes_below_K - constants::kZeroCelsius_K,
-                   all_liquid_degC = w.liquid_above_K - constants::kZeroCelsius_K;
-      to.push_back({"freezing",
-                    w.variable->name + text(" is ice below %.0f degC", all_ice_degC) +
-                        (w.liquid_above_K > w.freezes_below_K
-                             ? text(" and liquid above %.0f degC, linear between", all_liquid_degC)
-                             : "")});
-    }
-  if (has([](const WaterVariable& w) {
-        return w.species != Species::kCloudWater && w.species != Species::kCloudIce;
-      }))
-    to.push_back({"precipitation",
-                  "exponential sizes: rain by Marshall and Palmer (1948), snow by "
-                  "Houze et al. (1979), graupel by Hong and Lim (2006)"});
-}
-
-void ModelForecast::say(const WaterStatistics& s) {
-  auto& facts = model_.facts;
-  // The range of EGM2008: Pavlis et al. (2012), doi:10.1029/2011JB008916.
-  if (model_.geoid_m)
-    model_.facts.push_back("Heights stand on the geoid EGM96, and so does the sea of the data.");
-  else if (!model_.heights_on_ellipsoid)
-    model_.assumptions.push_back(
-        "Heights above sea level are taken as above the ellipsoid: the geoid lies 107 m below to "
-        "86 m above it.");
-  say_names();
-  say_optics(s);
-  if (s.negative > 0)
-    facts.push_back(std::to_string(s.negative) +
-                    text(" negative water values, down to %.3g, are taken as 0.", s.lowest));
-  if (s.missing > 0)
-    facts.push_back(std::to_string(s.missing) + text(" of %.0f water values are missing: no cloud "
-                                                     "there.",
-                                                     double(s.values)));
-  if (s.without_air > 0)
-    facts.push_back(std::to_string(s.without_air) +
-                    " water values have no pressure or temperature: no cloud there.");
 }
 
 // The thickness that a tenth of all optical depth is below; of all layers alike without cloud.
@@ -417,33 +350,6 @@ void ModelForecast::measure_heights() {
 }
 
 }  // namespace
-
-Air::State Air::at(std::size_t k, std::size_t n, std::size_t cells) const {
-  State state{};
-  const std::size_t at = k * cells + n;
-  state.pressure_Pa = pressure_Pa.empty() ? level_pressure_Pa[k] : double(pressure_Pa[at]);
-  if (temperature_K.empty() && level_temperature_K.empty()) {
-    state.temperature_K = standard_temperature_K(standard_geopotential_height_m(state.pressure_Pa));
-  } else {
-    state.temperature_K =
-        temperature_K.empty() ? level_temperature_K[k] : double(temperature_K[at]);
-    if (is_theta)
-      state.temperature_K = temperature_of_theta_K(state.temperature_K, state.pressure_Pa);
-  }
-  double q = vapour.empty() ? 0 : double(vapour[at]);
-  if (!(q > 0)) q = 0;  // missing vapour is dry air: 1 % of the density
-  if (vapour_is == Vapour::kMixingRatio) q = q / (1 + q);
-  if (vapour_is == Vapour::kRelative)
-    q = specific_humidity(q, state.temperature_K, state.pressure_Pa);
-  state.specific_humidity = q;
-  state.density_kg_per_m3 =
-      !density_kg_per_m3.empty() ? double(density_kg_per_m3[at])
-      : !level_density_kg_per_m3.empty()
-          ? level_density_kg_per_m3[k]
-          : moist_density_kg_per_m3(state.pressure_Pa, state.temperature_K, q);
-  state.dry_density_kg_per_m3 = state.density_kg_per_m3 * (1 - q);
-  return state;
-}
 
 std::unique_ptr<Forecast> make_forecast(Model model, const OpenRequest& request) {
   if (request.geoid && !model.heights_on_ellipsoid) model.geoid_m = egm96_m();

@@ -9,12 +9,14 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <numeric>
 
 #include "api/module_support.h"
 #include "core/error.h"
-#include "sources/netcdf/classic_size.h"
 #include "forecast/files/survives.h"
+#include "sources/netcdf/classic_size.h"
+#include "sources/netcdf/groups.h"
 
 namespace nepho::netcdf {
 namespace {
@@ -139,37 +141,82 @@ NcFile::~NcFile() {
   locked([&] { nc_close(id_); });
 }
 
+// What the groups hold, as it is met; dimensions_ and variables_ go along.
+struct NcFile::Contents {
+  std::vector<InGroup> dimensions, variables;
+  std::map<int, int> dimension_of;  // by netCDF's number, which is one in all groups
+};
+
 void NcFile::inquire() {
-  int dimensions = 0, variables = 0, attributes = 0;
-  if (const int status = nc_inq(id_, &dimensions, &variables, &attributes, nullptr))
-    refuse(path_, status);
-  for (int d = 0; d < dimensions; ++d) {
-    char name[NC_MAX_NAME + 1] = {};
-    forecast::FileDimension dimension;
-    if (const int status = nc_inq_dim(id_, d, name, &dimension.size)) refuse(path_, status);
-    dimension.name = name;
-    dimensions_.push_back(dimension);
+  Contents contents;
+  inquire_group(id_, "", contents);
+  bytes_ = std::vector<std::atomic<std::uint64_t>>(variables_.size());
+  const GroupNames flat = flat_names(contents.dimensions, contents.variables);
+  for (std::size_t d = 0; d < dimensions_.size(); ++d) dimensions_[d].name = flat.dimensions[d];
+  for (std::size_t v = 0; v < variables_.size(); ++v) {
+    FileVariable& variable = variables_[v];
+    variable.id = int(v);
+    variable.name = flat.variables[v];
+    for (FileAttribute& a : variable.attributes)
+      if (names_variables(a.name))
+        a.text = flat_references(a.name, a.text, contents.variables[v].group, contents.variables,
+                                 flat.variables);
   }
-  for (int v = 0; v < variables; ++v) variables_.push_back(inquire_variable(v));
-  bytes_ = std::vector<std::atomic<std::uint64_t>>(std::size_t(variables));
-  read_attributes(id_, NC_GLOBAL, attributes, global_.attributes);
 }
 
-FileVariable NcFile::inquire_variable(int id) {
+// Ancestors first: what the root says of the file comes before what its groups say.
+void NcFile::inquire_group(int group, const std::string& path, Contents& contents) {
+  int variables = 0, attributes = 0, dimensions = 0, groups = 0;
+  std::vector<int> ids(NC_MAX_DIMS), below(NC_MAX_DIMS);
+  if (const int status = nc_inq(group, nullptr, &variables, &attributes, nullptr))
+    refuse(path_, status);
+  if (const int status = nc_inq_dimids(group, &dimensions, ids.data(), 0)) refuse(path_, status);
+  for (int d = 0; d < dimensions; ++d) {
+    char name[NC_MAX_NAME + 1] = {};
+    const int id = ids[std::size_t(d)];
+    forecast::FileDimension dimension;
+    if (const int status = nc_inq_dim(group, id, name, &dimension.size)) refuse(path_, status);
+    contents.dimension_of[id] = int(dimensions_.size());
+    contents.dimensions.push_back({path, name});
+    dimensions_.push_back(dimension);
+  }
+  for (int v = 0; v < variables; ++v) {
+    variables_.push_back(inquire_variable(group, v));
+    FileVariable& variable = variables_.back();
+    for (int& d : variable.dimensions) d = contents.dimension_of.at(d);
+    const int axis = variable.dimensions.size() == 1 ? variable.dimensions[0] : -1;
+    const bool named_so = axis >= 0 && contents.dimensions[std::size_t(axis)].name == variable.name;
+    contents.variables.push_back({path, variable.name, named_so ? axis : -1});
+  }
+  std::vector<FileAttribute> own;
+  read_attributes(group, NC_GLOBAL, attributes, own);
+  for (FileAttribute& a : own)
+    if (!global_.attribute(a.name)) global_.attributes.push_back(std::move(a));
+  if (const int status = nc_inq_grps(group, &groups, nullptr)) refuse(path_, status);
+  below.resize(std::size_t(groups));
+  if (groups == 0) return;
+  if (const int status = nc_inq_grps(group, &groups, below.data())) refuse(path_, status);
+  for (const int child : below) {
+    char name[NC_MAX_NAME + 1] = {};
+    if (const int status = nc_inq_grpname(child, name)) refuse(path_, status);
+    inquire_group(child, (path.empty() ? "" : path + "/") + name, contents);
+  }
+}
+
+FileVariable NcFile::inquire_variable(int group, int id) {
   char name[NC_MAX_NAME + 1] = {};
   FileVariable variable;
-  variable.id = id;
   int type = 0, dimensions = 0, attributes = 0;
   std::vector<int> ids(NC_MAX_VAR_DIMS);
-  if (const int status = nc_inq_var(id_, id, name, &type, &dimensions, ids.data(), &attributes))
+  if (const int status = nc_inq_var(group, id, name, &type, &dimensions, ids.data(), &attributes))
     refuse(path_, status);
   variable.name = name;
-  types_.push_back(type);
+  handles_.push_back({group, id, type});
   variable.numeric = is_number(type);
-  nc_inq_type(id_, type, nullptr, &variable.value_bytes);
+  nc_inq_type(group, type, nullptr, &variable.value_bytes);
   ids.resize(std::size_t(dimensions));
   variable.dimensions = ids;
-  read_attributes(id_, id, attributes, variable.attributes);
+  read_attributes(group, id, attributes, variable.attributes);
   return variable;
 }
 
@@ -183,7 +230,7 @@ forecast::VariableBytes NcFile::bytes_read(const FileVariable& variable) const {
 template <class T>
 std::vector<T> NcFile::read(const FileVariable& variable, const std::vector<std::size_t>& start,
                             const std::vector<std::size_t>& count) const {
-  const int type = types_[std::size_t(variable.id)];
+  const auto [group, id, type] = handles_[std::size_t(variable.id)];
   const Packing packing = packing_of(variable, type);
   const std::size_t total =
       std::accumulate(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
@@ -198,7 +245,7 @@ std::vector<T> NcFile::read(const FileVariable& variable, const std::vector<std:
     if (type == NC_FLOAT) {
       locked([&] {
         if (const int status =
-                nc_get_vara_float(id_, variable.id, start.data(), count.data(), result.data()))
+                nc_get_vara_float(group, id, start.data(), count.data(), result.data()))
           fail(status);
       });
       for (T& value : result) value = T(packing.value(double(value)));
@@ -215,8 +262,7 @@ std::vector<T> NcFile::read(const FileVariable& variable, const std::vector<std:
       some[0] = height;
     }
     locked([&] {
-      if (const int status =
-              nc_get_vara_double(id_, variable.id, at.data(), some.data(), block.data()))
+      if (const int status = nc_get_vara_double(group, id, at.data(), some.data(), block.data()))
         fail(status);
     });
     for (std::size_t n = 0; n < height * row; ++n)
@@ -241,18 +287,18 @@ std::vector<std::string> NcFile::read_texts(const FileVariable& variable) const 
   const std::vector<std::size_t> count = shape(variable);
   const std::size_t total = values_in(variable);
   bytes_[std::size_t(variable.id)] += total * variable.value_bytes;
-  const int type = types_[std::size_t(variable.id)];
+  const auto [group, id, type] = handles_[std::size_t(variable.id)];
   std::vector<std::string> result;
   locked([&] {
     if (type == NC_CHAR) {
       const std::size_t length = count.empty() ? 1 : count.back();
       std::string all(total, '\0');
-      if (nc_get_var_text(id_, variable.id, all.data()) != NC_NOERR) return;
+      if (nc_get_var_text(group, id, all.data()) != NC_NOERR) return;
       for (std::size_t at = 0; length > 0 && at + length <= total; at += length)
         result.push_back(trimmed(all.substr(at, length)));
     } else if (type == NC_STRING) {
       std::vector<char*> strings(total, nullptr);
-      if (nc_get_var_string(id_, variable.id, strings.data()) != NC_NOERR) return;
+      if (nc_get_var_string(group, id, strings.data()) != NC_NOERR) return;
       for (const char* text : strings) result.push_back(text ? trimmed(text) : "");
       nc_free_string(total, strings.data());
     }

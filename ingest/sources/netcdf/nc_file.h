@@ -12,9 +12,9 @@
 
 namespace nepho::netcdf {
 
-// One netCDF file, read only, through netCDF-C (netCDF-3 and -4; the root group). All calls into
-// the library run under the host's I/O lock, with HDF5's own error printing off; what is known of
-// dimensions, variables and attributes is read once, so that asking for it takes no lock.
+// One netCDF file, read only, through netCDF-C (netCDF-3 and -4, all groups as one: groups.h). All
+// calls into the library run under the host's I/O lock, with HDF5's own error printing off; what is
+// known of dimensions, variables and attributes is read once, so that asking for it takes no lock.
 
 using forecast::FileAttribute;
 using forecast::FileVariable;
@@ -40,15 +40,21 @@ class NcFile final : public forecast::DataFile {
  private:
   template <class Action>
   auto locked(Action&& action) const;
+  struct Contents;
   void inquire();
-  FileVariable inquire_variable(int id);
+  void inquire_group(int group, const std::string& path, Contents& contents);
+  FileVariable inquire_variable(int group, int id);
   template <class T>
   std::vector<T> read(const FileVariable& variable, const std::vector<std::size_t>& start,
                       const std::vector<std::size_t>& count) const;
 
   IoLock io_lock_;
   int id_ = -1;
-  std::vector<int> types_;                                 // nc_type, by variable
+  struct Handle {
+    int group = 0, variable = 0;  // netCDF's
+    int type = 0;                 // nc_type
+  };
+  std::vector<Handle> handles_;                            // by variable
   mutable std::vector<std::atomic<std::uint64_t>> bytes_;  // asked for, by variable
 };
 
