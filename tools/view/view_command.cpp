@@ -1,4 +1,5 @@
 // nephoscope view: window, session, files that are opened beside it.
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <future>
@@ -88,6 +89,11 @@ Viewer::Viewer(const ViewOptions& options)
   if (options.render.size) size_ = size_value("--size", *options.render.size);
   window_ = open_window(default_module_folders(), size_.x, size_.y, "Nephoscope");
   log(LogLevel::kInfo, window_->description());
+  panel_.scene = "opening";
+  panel_.busy = true;
+  constexpr std::array<std::uint8_t, 3> kBlack{};
+  for (int twice = 0; twice < 2; ++twice)  // compiles: before anything else is on the way
+    window_->show(kBlack.data(), 1, 1, panel_);
   session_ = std::make_unique<SessionThread>(*window_, session_options());
   open(options.render);
 }
