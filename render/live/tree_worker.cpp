@@ -1,5 +1,11 @@
 #include "live/tree_worker.h"
 
+#if defined(__linux__)
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+#endif
+
 #include <algorithm>
 
 #include "reference/surface.h"
@@ -8,6 +14,14 @@ namespace nepho {
 namespace {
 
 constexpr std::uint32_t kFirstLeaves = 64, kMoreLeaves = 8;
+
+// Frames are marched on the same processors, and come first: this thread, and those that it starts.
+void yield_to_frames() {
+#if defined(__linux__)
+  constexpr int kNice = 10;
+  setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), kNice);
+#endif
+}
 
 }  // namespace
 
@@ -70,6 +84,7 @@ CachedSource::Counts TreeWorker::cache_counts() const {
 }
 
 void TreeWorker::run() {
+  yield_to_frames();
   for (;;) {
     std::optional<Task> task;
     {

@@ -24,6 +24,11 @@ fail() {
 says() {  # says TEXT FILE
   grep -q -- "$1" "$2" || { cat "$2"; fail "'$1' is not said"; }
 }
+# The window's own thread works no longer than this at a stretch, whatever is opened or compiled.
+window_is_free() {  # window_is_free FILE
+  cpu=$(sed -n 's/^window: .* at most \([0-9]*\) ms of CPU$/\1/p' "$1")
+  [ -n "$cpu" ] && [ "$cpu" -le 100 ] || { cat "$1"; fail "the window was held up"; }
+}
 case $what in
   no_display)
     if env -u DISPLAY -u WAYLAND_DISPLAY "$program" view scene.json --frames 3 2> said; then
@@ -57,6 +62,7 @@ case $what in
     view scene.json --frames 40 --record flown.json --screenshot shot.ppm > said 2>&1 ||
       { cat said; fail "the first flight"; }
     says "longest block" said
+    window_is_free said
     cat said
     [ "$(grep -c eye_m flown.json)" = 40 ] || fail "not 40 cameras"
     view scene.json --path flown.json --bench times.csv > said 2>&1 || { cat said; fail "replay"; }
@@ -89,11 +95,18 @@ case $what in
     echo "planet: $(grep 'longest block' said)"
     ;;
   forecast)
-    # While it is read, refined, uploaded and lit.
+    # While it is read, refined, uploaded and lit. What others run on this machine delays frames
+    # too: what is this program's doing is there each time.
     "$4" made --size 200x200x40 > said
-    view made/*.nc --frames 500 --size 320x180 > said 2>&1 || { cat said; fail "the forecast"; }
-    says "longest block" said
-    cat said
+    for try in 1 2 3; do
+      view made/*.nc --frames 500 --size 320x180 > said 2>&1 || { cat said; fail "the forecast"; }
+      window_is_free said
+      says "at rest" said
+      cat said
+      block=$(sed -n 's/^window: .*longest block \([0-9]*\) ms.*/\1/p' said)
+      [ "$block" -gt 100 ] || break
+      [ $try -lt 3 ] || fail "the window stood still for $block ms"
+    done
     ;;
   memory)
     # 2000 frames of a flight in circles take no more than the first 400 of them.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -111,11 +112,12 @@ void write_pass_times(const fs::path& file, const std::vector<PassTimes>& times)
 std::string gap_histogram(const std::vector<FrameTimes>& frames) {
   constexpr std::array kEnds_ms{17.0, 34.0, 67.0, 100.0, 200.0, 500.0, 1e12};
   std::array<int, kEnds_ms.size()> counts{};
-  double longest = 0;
+  double longest = 0, most_cpu = 0;
   for (const FrameTimes& frame : frames) {
     const auto end = std::ranges::find_if(kEnds_ms, [&](double e) { return frame.gap_ms < e; });
     ++counts[std::size_t(end - kEnds_ms.begin())];
     longest = std::max(longest, frame.gap_ms);
+    most_cpu = std::max(most_cpu, frame.cpu_ms);
   }
   std::string text;
   for (std::size_t n = 0; n < counts.size(); ++n) {
@@ -126,9 +128,16 @@ std::string gap_histogram(const std::vector<FrameTimes>& frames) {
       std::snprintf(part, sizeof part, "longer: %d; ", counts[n]);
     text += part;
   }
-  char end[60];
-  std::snprintf(end, sizeof end, "longest block %.0f ms", longest);
+  char end[80];
+  std::snprintf(end, sizeof end, "longest block %.0f ms, at most %.0f ms of CPU", longest,
+                most_cpu);
   return text + end;
+}
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
 }  // namespace nepho

@@ -18,7 +18,8 @@ void write_camera_path(const std::filesystem::path& file, const CameraPath& path
 
 // What the frames of a flight cost.
 struct FrameTimes {
-  double gap_ms = 0;  // wall time since the frame before
+  double gap_ms = 0;  // wall time until the next
+  double cpu_ms = 0;  // of it the thread's own CPU time
   std::vector<PassReport> passes;
 };
 // Of gaps, and of each pass's CPU time in ms: median and worst.
@@ -30,7 +31,8 @@ struct PassTimes {
 std::vector<PassTimes> summarise(const std::vector<FrameTimes>& frames);
 // .csv or .json, by the ending; throws Error.
 void write_pass_times(const std::filesystem::path& file, const std::vector<PassTimes>& times);
-// "below 16 ms: 40, 33: 2, ..., longest block 80 ms".
+// "below 17 ms: 40, below 34 ms: 2, ..., longest block 80 ms, at most 20 ms of CPU".
 std::string gap_histogram(const std::vector<FrameTimes>& frames);
+double thread_cpu_s();  // of the thread that calls it
 
 }  // namespace nepho

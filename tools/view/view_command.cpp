@@ -1,4 +1,5 @@
 // nephoscope view: window, session, files that are opened beside it.
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <future>
@@ -15,7 +16,7 @@
 #include "core/log.h"
 #include "scene/scene_file.h"
 #include "view/camera_path.h"
-#include "view/view_session.h"
+#include "view/session_thread.h"
 #include "view/window_loader.h"
 
 namespace nepho {
@@ -33,33 +34,42 @@ constexpr const char* kPlanet = R"({
              "look_at": {"lat_deg": -20.0, "lon_deg": -35.45, "height_m": 2000}, "fov_deg": 45}
 })";
 
+// A frame of the window is there so soon after the last, and while nothing is new, so soon.
+constexpr std::chrono::milliseconds kNextFrame{8}, kIdleFrame{30};
+
 class Viewer {
  public:
   explicit Viewer(const ViewOptions& options);
   void run();
 
  private:
+  SessionThread::Options session_options() const;
   void open(const RenderOptions& options);
   void take_opened();
+  void take_news();
   void drop(const std::vector<std::string>& files);
   void say(const std::string& text, bool error);
+  void refuse(const Error& error);
   void save(const fs::path& output);
   fs::path free_name() const;
   bool frame();  // false: the end
+  void report();
 
   const ViewOptions& options_;
   PictureFiles pictures_;
   SourceHost host_;
   std::optional<CameraPath> replay_;
-  CameraPath record_;
   int most_frames_ = 0, coarse_ = 0;
-  glm::ivec2 size_{0};  // of the window, and of pictures that are saved
+  glm::ivec2 size_{960, 540};  // of the window at first, and of pictures that are saved
   std::unique_ptr<Window> window_;
-  std::unique_ptr<ViewSession> session_;  // before the window in destruction
+  std::unique_ptr<SessionThread> session_;  // before the window in destruction
   std::future<OpenedScene> opening_;
+  bool tried_one_ = false;    // scene of the command line
+  bool scene_given_ = false;  // the session has one, or is about to
   Panel panel_;
-  std::vector<FrameTimes> times_;
-  Clock::time_point last_ = Clock::now();
+  std::vector<FrameTimes> gaps_;  // of the window, while they are counted
+  Clock::time_point last_;
+  double last_cpu_s_ = 0;
 };
 
 Viewer::Viewer(const ViewOptions& options)
@@ -76,25 +86,21 @@ Viewer::Viewer(const ViewOptions& options)
   if (options.coarse && coarse_ != 1 && coarse_ != 2 && coarse_ != 4 && coarse_ != 8)
     throw Error({"bad value", "--coarse", "1, 2, 4 or 8", *options.coarse, ""});
   if (replay_) most_frames_ = int(replay_->cameras.size());
-  RenderOptions render = options.render;
-  Scene scene =
-      render.inputs.empty() ? parse_scene(kPlanet, "the procedural planet", ".") : Scene();
-  if (!render.inputs.empty()) {
-    try {
-      scene = scene_from(render, pictures_);
-    } catch (const Error& error) {
-      if (most_frames_ > 0) throw;  // nobody looks at the window
-      say(error.what(), true);
-      scene = parse_scene(kPlanet, "the procedural planet", ".");
-    }
-  }
-  size_ = {scene.render.width, scene.render.height};
-  if (render.inputs.empty() && !render.size) size_ = {960, 540};
-  if (render.size) size_ = size_value("--size", *render.size);
+  if (options.render.size) size_ = size_value("--size", *options.render.size);
   window_ = open_window(default_module_folders(), size_.x, size_.y, "Nephoscope");
   log(LogLevel::kInfo, window_->description());
-  opening_ = std::async(std::launch::async,
-                        [this, scene = std::move(scene)] { return open_scene(host_, scene); });
+  panel_.scene = "opening";
+  panel_.busy = true;
+  constexpr std::array<std::uint8_t, 3> kBlack{};
+  for (int twice = 0; twice < 2; ++twice)  // compiles: before anything else is on the way
+    window_->show(kBlack.data(), 1, 1, panel_);
+  session_ = std::make_unique<SessionThread>(*window_, session_options());
+  open(options.render);
+}
+
+SessionThread::Options Viewer::session_options() const {
+  return {coarse_, replay_, most_frames_, options_.record.has_value(),
+          most_frames_ > 0 || options_.bench.has_value()};
 }
 
 void Viewer::say(const std::string& text, bool error) {
@@ -103,41 +109,66 @@ void Viewer::say(const std::string& text, bool error) {
   log(error ? LogLevel::kWarning : LogLevel::kInfo, text);
 }
 
-void Viewer::drop(const std::vector<std::string>& files) {
-  if (opening_.valid()) return say("the last files are still being opened", true);
-  try {
-    for (const std::string& file : files)
-      if (fs::is_directory(file))
-        throw Error({"a folder cannot be opened", file, "files: scenes, pictures, data", "", ""});
-    RenderOptions options;
-    options.inputs = files;
-    Scene scene = scene_from(options, pictures_);
-    say("opening " + fs::path(files.front()).filename().string(), false);
-    opening_ = std::async(std::launch::async,
-                          [this, scene = std::move(scene)] { return open_scene(host_, scene); });
-  } catch (const Error& error) {
-    say(error.what(), true);
-  }
+// Beside the window, which goes on with what it has: files, modules and automatic views take long.
+void Viewer::open(const RenderOptions& options) {
+  const std::string name = options.inputs.empty()
+                               ? "the procedural planet"
+                               : fs::path(options.inputs.front()).filename().string();
+  if (!panel_.message_is_error) say("opening " + name, false);
+  opening_ = std::async(std::launch::async, [this, options] {
+    return open_scene(host_, options.inputs.empty() ? parse_scene(kPlanet, "the planet", ".")
+                                                    : scene_from(options, pictures_));
+  });
 }
 
-// What was opened meanwhile takes the place of what was there; what could not be opened does not.
+void Viewer::drop(const std::vector<std::string>& files) {
+  if (opening_.valid()) return say("the last files are still being opened", true);
+  for (const std::string& file : files)
+    if (fs::is_directory(file))
+      return refuse(
+          Error({"a folder cannot be opened", file, "files: scenes, pictures, data", "", ""}));
+  panel_.message_is_error = false;
+  RenderOptions options;
+  options.inputs = files;
+  open(options);
+}
+
+// The scene before stays; where there was none and somebody looks, the planet is there.
+void Viewer::refuse(const Error& error) {
+  const bool nothing = !scene_given_ && !opening_.valid();
+  if (nothing && (most_frames_ > 0 || tried_one_)) throw Error(error);
+  say(error.what(), true);
+  if (!nothing) return;
+  tried_one_ = true;
+  open({});
+}
+
 void Viewer::take_opened() {
   if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return;
   try {
     OpenedScene opened = opening_.get();
-    auto session = std::make_unique<ViewSession>(std::move(opened), coarse_);
-    session_ = std::move(session);
-    Panel empty;  // what it says is of the scene before, but for why another one was not opened
-    if (panel_.message_is_error) {
-      empty.message = panel_.message;
-      empty.message_is_error = true;
+    const RenderSettings& settings = opened.scene.render;
+    if (!tried_one_ && !options_.render.inputs.empty() && !options_.render.size) {
+      size_ = {settings.width, settings.height};
+      window_->set_size(size_.x, size_.y);
     }
-    panel_ = empty;
+    tried_one_ = scene_given_ = true;
+    session_->open(std::move(opened));
+    if (!panel_.message_is_error) panel_.message.clear();
   } catch (const Error& error) {
-    if (!session_ && most_frames_ > 0) throw;
-    say(error.what(), true);
+    refuse(error);
   }
+}
+
+void Viewer::take_news() {
+  for (const SessionThread::News& news : session_->take_news())
+    if (!news.error) {
+      say(news.text, false);
+    } else {
+      scene_given_ = session_->has_session();
+      refuse(*news.error);
+    }
 }
 
 fs::path Viewer::free_name() const {
@@ -155,67 +186,74 @@ fs::path Viewer::free_name() const {
 
 // By the offline renderer, with its error line and the scene in it.
 void Viewer::save(const fs::path& output) {
-  const PictureFormat format = picture_format(output);
-  pictures_.check_format(output);
-  const OpenedScene seen = session_->as_seen(size_.x, size_.y);
-  OutputFile file(output, largest_size(seen.scene.render, format));
-  const RenderResult result = render(seen.request);
-  const std::string error = error_line(result.error);
-  write_picture(pictures_, file.temporary(), format, seen, linear_image(result.image),
-                metadata_of(seen, output, error));
-  file.commit();
-  say(output.string() + ": " + error, false);
+  session_->ask([this, output, size = size_](const ViewSession& session) {
+    const PictureFormat format = picture_format(output);
+    pictures_.check_format(output);
+    const OpenedScene seen = session.as_seen(size.x, size.y);
+    OutputFile file(output, largest_size(seen.scene.render, format));
+    const RenderResult result = render(seen.request);
+    const std::string error = error_line(result.error);
+    write_picture(pictures_, file.temporary(), format, seen, linear_image(result.image),
+                  metadata_of(seen, output, error));
+    file.commit();
+    return output.string() + ": " + error;
+  });
 }
 
 bool Viewer::frame() {
   const auto now = Clock::now();
   const double gap_s = std::chrono::duration<double>(now - last_).count();
+  const double cpu_s = thread_cpu_s();
+  if (most_frames_ > 0) gaps_.push_back({1e3 * gap_s, 1e3 * (cpu_s - last_cpu_s_), {}});
   last_ = now;
+  last_cpu_s_ = cpu_s;
   const WindowInput input = window_->poll();
   if (input.close) return false;
+  session_->check();
   if (!input.dropped.empty()) drop(input.dropped);
   take_opened();
-  bool fresh = false;
-  if (session_) {
-    if (!times_.empty()) times_.back().gap_ms = 1e3 * gap_s;  // of the frame before, all of it
-    session_->apply(panel_);
-    if (replay_)
-      session_->set_camera(replay_->cameras[times_.size() % replay_->cameras.size()]);
-    else
-      session_->act(input, std::min(gap_s, 0.1));
-    fresh = session_->advance(input.width, input.height);
-    session_->fill(panel_);
-    times_.push_back({0, session_->status().passes});
-    if (options_.record) record_.cameras.push_back(session_->camera());
-    if (input.screenshot) try {
-        save(free_name());
-      } catch (const Error& error) {
-        say(error.what(), true);
-      }
-  } else {
+  take_news();
+  session_->apply(panel_);
+  session_->act(input, gap_s);
+  const bool fresh = session_->fill(panel_);
+  if (!session_->has_session()) {
     panel_.busy = true;
     panel_.scene = "opening";
   }
-  panel_.changed = false;
-  const ByteImage none;
-  const ByteImage& picture = session_ ? session_->picture() : none;
+  if (input.screenshot) save(free_name());
+  const ByteImage& picture = session_->picture();
   window_->show(picture.values.empty() ? nullptr : picture.values.data(), picture.width,
                 picture.height, panel_);
-  // Nothing new: the next look need not be at once, and whoever reads or refines has the processor.
-  if (!fresh && !replay_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  return most_frames_ == 0 || int(times_.size()) < most_frames_;
+  std::this_thread::sleep_until(now + (fresh ? kNextFrame : kIdleFrame));
+  return !session_->done();
 }
 
 void Viewer::run() {
+  last_ = Clock::now();
+  last_cpu_s_ = thread_cpu_s();
   while (frame()) {
   }
-  if (!times_.empty()) times_.pop_back();  // its end was not seen
-  if (options_.screenshot && session_) save(*options_.screenshot);
-  if (options_.record) write_camera_path(*options_.record, record_);
-  if (options_.bench) write_pass_times(*options_.bench, summarise(times_));
-  if (most_frames_ == 0 || times_.empty()) return;
-  const LiveStatus& status = session_->status();
-  std::printf("%zu frames; %s\n", times_.size(), gap_histogram(times_).c_str());
+  if (options_.screenshot && session_->has_session()) {
+    save(*options_.screenshot);
+    session_->wait_for_tasks();
+    for (const SessionThread::News& news : session_->take_news())
+      if (news.error)
+        throw Error(*news.error);
+      else
+        say(news.text, false);
+  }
+  report();
+}
+
+void Viewer::report() {
+  std::vector<FrameTimes> times = session_->times();
+  if (!times.empty()) times.pop_back();  // its end was not seen
+  if (options_.record) write_camera_path(*options_.record, session_->recorded());
+  if (options_.bench) write_pass_times(*options_.bench, summarise(times));
+  if (most_frames_ == 0 || times.empty()) return;
+  const LiveStatus status = session_->status();
+  std::printf("%zu frames; %s\n", times.size(), gap_histogram(times).c_str());
+  std::printf("window: %zu frames; %s\n", gaps_.size(), gap_histogram(gaps_).c_str());
   std::printf("%lu leaves, %.1f of %.0f MiB, %lu bricks read, %lu uploaded, %lu tiles lit, %s\n",
               status.leaves, double(status.bytes) / 1048576, double(status.budget_bytes) / 1048576,
               status.bricks_read, status.bricks_uploaded, status.tiles_lit,

@@ -31,6 +31,7 @@ class ViewSession {
   const Camera& camera() const { return flight_.camera(); }
   const LiveStatus& status() const { return status_; }
   bool at_rest() const { return live_->at_rest() && live_->whole(); }
+  bool streaming() const { return live_->streaming(); }
   void fill(Panel& panel) const;
   // The scene as it is seen now, to be drawn in this size. Its sources stay here.
   OpenedScene as_seen(int width, int height) const;

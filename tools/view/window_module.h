@@ -10,7 +10,7 @@ namespace nepho {
 // What crosses to the run-time module that knows GLFW and Dear ImGui: the program opens it for
 // `view` only, and links neither. Built by the same compiler, as source modules are.
 
-inline constexpr std::uint32_t kWindowModuleVersion = 1;
+inline constexpr std::uint32_t kWindowModuleVersion = 2;
 
 // What a user did since the last frame.
 struct WindowInput {
@@ -52,6 +52,11 @@ class Window {
   // both.
   virtual void show(const std::uint8_t* rgb, int width, int height, Panel& panel) = 0;
   virtual std::string description() const = 0;  // of the OpenGL context
+  virtual void set_size(int width, int height) = 0;
+  // A second context, of the same device and sharing nothing with the window's: current on the
+  // thread that calls it, until the same thread leaves it.
+  virtual void use_second_context() = 0;
+  virtual void leave_second_context() = 0;
 };
 
 struct WindowModule {

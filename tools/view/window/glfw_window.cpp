@@ -22,7 +22,7 @@ void note_error(int, const char* text) {
 
 class GlfwWindow final : public Window {
  public:
-  explicit GlfwWindow(GLFWwindow* window) : window_(window) {
+  GlfwWindow(GLFWwindow* window, GLFWwindow* second) : window_(window), second_(second) {
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
@@ -55,6 +55,7 @@ class GlfwWindow final : public Window {
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
+    glfwDestroyWindow(second_);
     glfwDestroyWindow(window_);
     glfwTerminate();
   }
@@ -116,9 +117,12 @@ class GlfwWindow final : public Window {
     return "GLFW " + std::string(glfwGetVersionString()) + ", " +
            reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   }
+  void set_size(int width, int height) override { glfwSetWindowSize(window_, width, height); }
+  void use_second_context() override { glfwMakeContextCurrent(second_); }
+  void leave_second_context() override { glfwMakeContextCurrent(nullptr); }
 
  private:
-  GLFWwindow* window_;
+  GLFWwindow *window_, *second_;  // the latter is never seen
   GLuint texture_ = 0;
   WindowInput input_;
   double last_x_ = 0, last_y_ = 0;
@@ -153,7 +157,10 @@ Window* open_window(int width, int height, const char* title, char* what, std::s
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   GLFWwindow* window = glfwCreateWindow(width, height, title, nullptr, nullptr);
   if (!window) return refuse("the display has no OpenGL 4.5 core", found_opengl());
-  return new GlfwWindow(window);
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  GLFWwindow* second = glfwCreateWindow(16, 16, "", nullptr, nullptr);
+  if (!second) return refuse("the display has no second OpenGL context", last_error);
+  return new GlfwWindow(window, second);
 }
 
 constexpr WindowModule kModule{kWindowModuleVersion, open_window};

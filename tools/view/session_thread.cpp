@@ -1,0 +1,237 @@
+// window: input, panel, files -> Wanted -> this: steps of a session -> picture, panel, news
+#include "view/session_thread.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace nepho {
+namespace {
+
+// A step that waits for bricks looks so often whether there are any.
+constexpr std::chrono::milliseconds kLook{10};
+// Motion that a long step has missed is not caught up with.
+constexpr double kLongestMove_s = 0.25;
+
+void add(WindowInput& sum, const WindowInput& more) {
+  const WindowInput before = std::exchange(sum, more);
+  sum.turn_x += before.turn_x;
+  sum.turn_y += before.turn_y;
+  sum.scroll += before.scroll;
+  sum.next_mode |= before.next_mode;
+  sum.reset |= before.reset;
+}
+
+}  // namespace
+
+SessionThread::SessionThread(Window& window, Options options)
+    : options_(std::move(options)), thread_([this, &window] { run(window); }) {}
+
+SessionThread::~SessionThread() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void SessionThread::open(OpenedScene opened) {
+  const std::lock_guard lock(mutex_);
+  wanted_.opened = std::move(opened);
+  wake_.notify_one();
+}
+
+void SessionThread::act(const WindowInput& input, double seconds) {
+  const std::lock_guard lock(mutex_);
+  if (!wanted_.input) wanted_.input.emplace();
+  add(*wanted_.input, input);
+  wanted_.seconds += seconds;
+  wake_.notify_one();
+}
+
+void SessionThread::apply(const Panel& panel) {
+  if (!panel.changed) return;
+  const std::lock_guard lock(mutex_);
+  wanted_.panel = panel;
+  wanted_.panel_number = ++panels_posted_;
+  wanted_.panel_scene = filled_from_;
+  wake_.notify_one();
+}
+
+void SessionThread::ask(Task task) {
+  const std::lock_guard lock(mutex_);
+  wanted_.tasks.push_back(std::move(task));
+  wake_.notify_one();
+}
+
+void SessionThread::wait_for_tasks() {
+  std::unique_lock lock(mutex_);
+  idle_.wait(lock, [&] { return ended_by_ || (!working_ && wanted_.tasks.empty()); });
+}
+
+bool SessionThread::fill(Panel& panel) {
+  const std::lock_guard lock(mutex_);
+  if (has_session_ && panels_used_ == panels_posted_) {
+    Panel filled = panel_;
+    filled.message = panel.message;
+    filled.message_is_error = panel.message_is_error;
+    panel = std::move(filled);
+    filled_from_ = panel_of_;
+  } else if (has_session_) {  // what was changed is not there yet: it is not taken back
+    panel.lines = panel_.lines;
+    panel.busy = true;
+  }
+  panel.changed = false;
+  if (!fresh_) return false;
+  picture_ = std::move(fresh_);
+  return true;
+}
+
+bool SessionThread::has_session() const {
+  const std::lock_guard lock(mutex_);
+  return has_session_;
+}
+bool SessionThread::done() const {
+  const std::lock_guard lock(mutex_);
+  return options_.most_steps > 0 && steps_ >= options_.most_steps;
+}
+bool SessionThread::at_rest() const {
+  const std::lock_guard lock(mutex_);
+  return at_rest_;
+}
+LiveStatus SessionThread::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+std::vector<FrameTimes> SessionThread::times() const {
+  const std::lock_guard lock(mutex_);
+  return times_;
+}
+CameraPath SessionThread::recorded() const {
+  const std::lock_guard lock(mutex_);
+  return recorded_;
+}
+
+std::vector<SessionThread::News> SessionThread::take_news() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(news_, {});
+}
+
+void SessionThread::add_news(News news) {
+  const std::lock_guard lock(mutex_);
+  news_.push_back(std::move(news));
+}
+
+void SessionThread::check() const {
+  const std::lock_guard lock(mutex_);
+  if (ended_by_) std::rethrow_exception(ended_by_);
+}
+
+void SessionThread::run(Window& window) {
+  try {
+    window.use_second_context();
+    Wanted wanted;
+    while (wait_for_wanted(wanted)) {
+      if (wanted.input) {
+        width_ = wanted.input->width;
+        height_ = wanted.input->height;
+      }
+      if (wanted.opened) show(std::move(*wanted.opened));
+      do_tasks(wanted.tasks);
+      if (steps_left()) step(wanted);
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    ended_by_ = std::current_exception();
+  }
+  session_.reset();  // while its context is current
+  window.leave_second_context();
+  idle_.notify_all();
+}
+
+bool SessionThread::steps_left() const {
+  return session_ && width_ > 0 && (options_.most_steps == 0 || steps_ < options_.most_steps);
+}
+
+bool SessionThread::wait_for_wanted(Wanted& wanted) {
+  std::unique_lock lock(mutex_);
+  working_ = false;
+  idle_.notify_all();
+  const auto something = [&] { return stop_ || wanted_.any(); };
+  const bool flies = options_.replay && flown_;
+  if (!steps_left() || (at_rest_ && !flies))
+    wake_.wait(lock, something);
+  else if (!flies && !fresh_step_ && !session_->streaming())
+    wake_.wait_for(lock, kLook, something);
+  if (stop_) return false;
+  wanted = std::exchange(wanted_, {});
+  working_ = true;
+  return true;
+}
+
+void SessionThread::show(OpenedScene opened) {
+  try {
+    session_ = std::make_unique<ViewSession>(std::move(opened), options_.coarse);
+    ++scene_;
+    const std::lock_guard lock(mutex_);
+    fresh_.reset();
+  } catch (const Error& error) {
+    add_news({"", error});
+  }
+}
+
+void SessionThread::do_tasks(const std::vector<Task>& tasks) {
+  for (const Task& task : tasks) {
+    if (!session_) continue;
+    try {
+      add_news({task(*session_), {}});
+    } catch (const Error& error) {
+      add_news({"", error});
+    }
+  }
+}
+
+void SessionThread::step(const Wanted& wanted) {
+  const auto now = Clock::now();
+  const double cpu_s = thread_cpu_s();
+  if (wanted.panel && wanted.panel_scene == scene_) session_->apply(*wanted.panel);
+  if (options_.replay)
+    session_->set_camera(
+        options_.replay->cameras[std::size_t(steps_) % options_.replay->cameras.size()]);
+  else if (wanted.input)
+    session_->act(*wanted.input, std::min(wanted.seconds, kLongestMove_s));
+  fresh_step_ = session_->advance(width_, height_);
+  publish(wanted);
+  if (fresh_step_ || session_->status().failure) flown_ = true;
+  if (flown_ || !options_.replay) note_step(now, cpu_s);
+}
+
+void SessionThread::note_step(Clock::time_point begin, double cpu_s) {
+  const std::lock_guard lock(mutex_);
+  if (options_.times && steps_ > 0) {  // of the step before, all of it
+    times_.back().gap_ms = 1e3 * std::chrono::duration<double>(begin - last_).count();
+    times_.back().cpu_ms = 1e3 * (cpu_s - last_cpu_s_);
+  }
+  last_ = begin;
+  last_cpu_s_ = cpu_s;
+  if (options_.times) times_.push_back({0, 0, status_.passes});
+  if (options_.record) recorded_.cameras.push_back(session_->camera());
+  ++steps_;
+}
+
+void SessionThread::publish(const Wanted& wanted) {
+  Panel panel;
+  session_->fill(panel);
+  std::shared_ptr<const ByteImage> picture;
+  if (fresh_step_) picture = std::make_shared<const ByteImage>(session_->picture());
+  const std::lock_guard lock(mutex_);
+  panel_ = std::move(panel);
+  panel_of_ = scene_;
+  if (wanted.panel) panels_used_ = wanted.panel_number;
+  if (picture) fresh_ = std::move(picture);
+  has_session_ = true;
+  at_rest_ = session_->at_rest();
+  status_ = session_->status();
+}
+
+}  // namespace nepho
