@@ -53,6 +53,7 @@ class LiveRenderer::Impl {
   void set(const RenderRequest& request);
   bool update();
   bool at_rest() const;
+  bool complete() const;
   const RenderSettings& settings() const { return request_.settings; }
   HdrImage frame(int each);
   bool whole() const { return !changed_ && shares_.whole(); }
@@ -110,7 +111,7 @@ void LiveRenderer::Impl::set(const RenderRequest& request) {
   request_.settings.budget_mib = double(budget_.budget_bytes) / (1024.0 * 1024.0);
   asked_ = wanted;
   changed_ = true;
-  worker_.ask(request_, new_contents, ++last_request_);
+  worker_.ask(request_, new_contents, ++last_request_, next_.has_value());
 }
 
 bool LiveRenderer::Impl::update() {
@@ -143,6 +144,10 @@ void LiveRenderer::Impl::begin(std::unique_ptr<LiveTree> tree) {
 // One step; true where the tree has taken its place.
 bool LiveRenderer::Impl::advance() {
   Next& next = *next_;
+#if defined(NEPHO_MUTANT_LIVE_NO_PARENTS)
+  next.uploaded = next.tree->tree().leaves.size();
+  next.listed = true;
+#endif
   if (upload_some()) return false;
   if (!next.listed) {
     const LiveTree& tree = next.tree->tree();
@@ -236,7 +241,13 @@ void LiveRenderer::Impl::light_some(ResidentTree& tree, std::uint64_t light,
 bool LiveRenderer::Impl::at_rest() const {
   if (worker_.busy() || next_ || !stale_.empty()) return false;
   if (worker_.failure()) return true;
-  return shown_ && shown_->tree().complete && shown_->tree().number == last_request_;
+  return shown_ && complete() && shown_->tree().number == last_request_;
+}
+
+// As fine as asked for, and no finer for what was seen before.
+bool LiveRenderer::Impl::complete() const {
+  const LiveTree& tree = shown_->tree();
+  return tree.complete || worker_.rested() == tree.number;
 }
 
 void LiveRenderer::Impl::bind(ResidentTree& tree, const FrameData& frame) {
@@ -298,10 +309,11 @@ LiveStatus LiveRenderer::Impl::status() const {
   LiveStatus status = counts_;
   status.budget_bytes = budget_.budget_bytes;
   status.gpu_bytes = budget_.gpu_bytes;
-  // The tree that is being made may take all that a tree may.
-  std::uint64_t host_bytes = worker_.busy() ? budget_.tree_bytes : 0;
+  std::uint64_t host_bytes = worker_.tree_bytes();
+  status.trees_held = worker_.trees();
   for (const ResidentTree* tree : {shown_.get(), next_ ? next_->tree.get() : nullptr}) {
     if (!tree) continue;
+    ++status.trees_held;
     host_bytes += tree->tree().host_bytes();
     status.gpu_bytes += tree->gpu_bytes();
     if (tree->tree().planet) status.planet_bytes += tree->tree().planet->gpu_bytes();
@@ -310,7 +322,7 @@ LiveStatus LiveRenderer::Impl::status() const {
     const LiveTree& tree = shown_->tree();
     status.leaves = tree.leaves.size();
     for (const VolumeTree& volume : tree.forest.volumes) status.nodes += volume.nodes.size();
-    status.complete = tree.complete;
+    status.complete = complete();
     status.budget_bound = tree.forest.budget_bound;
   }
   const CachedSource::Counts cache = worker_.cache_counts();

@@ -25,6 +25,7 @@ struct LiveStatus {
   std::uint64_t bricks_read = 0, bricks_remembered = 0, bricks_uploaded = 0, tiles_lit = 0;
   std::uint64_t stale_tiles = 0;  // shown with light that was worked out in an earlier tree
   std::uint64_t trees = 0;        // taken over so far
+  int trees_held = 0;             // in memory, with what is being made
   std::uint64_t overruns = 0;     // rays of the last frame that llvmpipe cut off
   std::size_t programs = 0;
   std::vector<PassReport> passes;  // of the last frame
