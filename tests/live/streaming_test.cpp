@@ -165,6 +165,26 @@ TEST_F(Streaming, AFlightKeepsItsBudget) {
                   "1");
 }
 
+// Room for three trees in memory and two in the atlases: what that costs, where it is full.
+TEST_F(Streaming, AFullBudgetAtRestShowsWhatAThirdDoesOffline) {
+  const FieldSource source = puffs(0, 4);
+  RenderRequest request = puffs_request(source);
+  request.settings.pixels_per_voxel = 0.25;
+  const HdrImage truth = render(request).image;
+  request.settings.budget_mib = 6;
+  LiveRenderer live(request);
+  ASSERT_TRUE(settle(live));
+  ASSERT_TRUE(live.status().budget_bound);
+  const double mine = apart(live.frame(), truth);
+  request.settings.budget_mib = 2;
+  const double third = apart(render(request).image, truth);
+  std::printf("measured: %lu leaves, %.2g off the finest; offline in a third %.2g\n",
+              live.status().leaves, mine, third);
+  report_accuracy("A view that moves", "a full budget at rest: error over offline in a third of it",
+                  mine / third, 1, "1");
+  EXPECT_LE(mine, third);
+}
+
 // While one tree is uploaded for long, and requests go on.
 TEST_F(Streaming, NoMoreTreesThanTheBudgetWasSharedAmong) {
   const FieldSource source = puffs();
