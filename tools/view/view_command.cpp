@@ -44,6 +44,10 @@ class Viewer {
   void drop(const std::vector<std::string>& files);
   void say(const std::string& text, bool error);
   void save(const fs::path& output);
+  void save_if_asked(bool asked);
+  bool step(const WindowInput& input, double gap_s);  // true: there is a new picture
+  double idle_s() const;
+  void await_error();
   fs::path free_name() const;
   bool frame();  // false: the end
 
@@ -57,7 +61,10 @@ class Viewer {
   std::unique_ptr<Window> window_;
   std::unique_ptr<ViewSession> session_;  // before the window in destruction
   std::future<OpenedScene> opening_;
+  std::string opening_name_ = "the procedural planet";
   Panel panel_;
+  bool hidden_ = false, saving_ = false;  // the panel; at the next frame
+  std::string told_;                      // the last error line in the log
   std::vector<FrameTimes> times_;
   Clock::time_point last_ = Clock::now();
 };
@@ -82,6 +89,7 @@ Viewer::Viewer(const ViewOptions& options)
   if (!render.inputs.empty()) {
     try {
       scene = scene_from(render, pictures_);
+      opening_name_ = fs::path(render.inputs.front()).filename().string();
     } catch (const Error& error) {
       if (most_frames_ > 0) throw;  // nobody looks at the window
       say(error.what(), true);
@@ -112,7 +120,8 @@ void Viewer::drop(const std::vector<std::string>& files) {
     RenderOptions options;
     options.inputs = files;
     Scene scene = scene_from(options, pictures_);
-    say("opening " + fs::path(files.front()).filename().string(), false);
+    opening_name_ = fs::path(files.front()).filename().string();
+    say("opening " + opening_name_, false);
     opening_ = std::async(std::launch::async,
                           [this, scene = std::move(scene)] { return open_scene(host_, scene); });
   } catch (const Error& error) {
@@ -128,6 +137,7 @@ void Viewer::take_opened() {
     OpenedScene opened = opening_.get();
     auto session = std::make_unique<ViewSession>(std::move(opened), coarse_);
     session_ = std::move(session);
+    log(LogLevel::kInfo, "opened " + opening_name_);
     Panel empty;  // what it says is of the scene before, but for why another one was not opened
     if (panel_.message_is_error) {
       empty.message = panel_.message;
@@ -167,43 +177,81 @@ void Viewer::save(const fs::path& output) {
   say(output.string() + ": " + error, false);
 }
 
+// Said in one frame, done in the next: it takes a while.
+void Viewer::save_if_asked(bool asked) {
+  if (saving_) try {
+      save(free_name());
+    } catch (const Error& error) {
+      say(error.what(), true);
+    }
+  saving_ = asked && !saving_;
+  if (saving_) say("drawing the picture at full quality", false);
+}
+
+bool Viewer::step(const WindowInput& input, double gap_s) {
+  if (!times_.empty()) times_.back().gap_ms = 1e3 * gap_s;  // of the frame before, all of it
+  try {
+    session_->apply(panel_);
+  } catch (const Error& error) {
+    say(error.what(), true);
+  }
+  if (replay_)
+    session_->set_camera(replay_->cameras[times_.size() % replay_->cameras.size()]);
+  else
+    session_->act(input, std::min(gap_s, 0.1));
+  const bool fresh = session_->advance(input.width, input.height);
+  session_->fill(panel_);
+  times_.push_back({});
+  if (fresh) times_.back().passes = session_->status().passes;
+  if (options_.record) record_.cameras.push_back(session_->camera());
+  save_if_asked(input.screenshot);
+  if (most_frames_ == 0 && session_->error() && told_ != session_->error_text()) {
+    told_ = session_->error_text();
+    log(LogLevel::kInfo, "at rest: " + told_);
+  }
+  return fresh;
+}
+
+// Where nothing moves, until something happens; whoever reads or refines has the processor then.
+double Viewer::idle_s() const {
+  const bool still = session_ && session_->at_rest() && !opening_.valid() && !saving_;
+  return still && most_frames_ == 0 ? 0.05 : 0;
+}
+
 bool Viewer::frame() {
+  const WindowInput input = window_->poll(idle_s());
   const auto now = Clock::now();
   const double gap_s = std::chrono::duration<double>(now - last_).count();
   last_ = now;
-  const WindowInput input = window_->poll();
   if (input.close) return false;
   if (!input.dropped.empty()) drop(input.dropped);
   take_opened();
   bool fresh = false;
   if (session_) {
-    if (!times_.empty()) times_.back().gap_ms = 1e3 * gap_s;  // of the frame before, all of it
-    session_->apply(panel_);
-    if (replay_)
-      session_->set_camera(replay_->cameras[times_.size() % replay_->cameras.size()]);
-    else
-      session_->act(input, std::min(gap_s, 0.1));
-    fresh = session_->advance(input.width, input.height);
-    session_->fill(panel_);
-    times_.push_back({0, session_->status().passes});
-    if (options_.record) record_.cameras.push_back(session_->camera());
-    if (input.screenshot) try {
-        save(free_name());
-      } catch (const Error& error) {
-        say(error.what(), true);
-      }
+    fresh = step(input, gap_s);
   } else {
     panel_.busy = true;
     panel_.scene = "opening";
   }
+  if (input.hide) hidden_ = !hidden_;
+  panel_.hidden = hidden_;
   panel_.changed = false;
   const ByteImage none;
   const ByteImage& picture = session_ ? session_->picture() : none;
   window_->show(picture.values.empty() ? nullptr : picture.values.data(), picture.width,
                 picture.height, panel_);
-  // Nothing new: the next look need not be at once, and whoever reads or refines has the processor.
+  // Nothing new: the next look need not be at once.
   if (!fresh && !replay_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   return most_frames_ == 0 || int(times_.size()) < most_frames_;
+}
+
+// Of a run of so many frames that ended at rest.
+void Viewer::await_error() {
+  while (session_->awaits_error()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const WindowInput input = window_->poll(0);
+    session_->advance(input.width, input.height);
+  }
 }
 
 void Viewer::run() {
@@ -220,6 +268,8 @@ void Viewer::run() {
               status.leaves, double(status.bytes) / 1048576, double(status.budget_bytes) / 1048576,
               status.bricks_read, status.bricks_uploaded, status.tiles_lit,
               session_->at_rest() ? "at rest" : "not at rest");
+  await_error();
+  std::printf("%s\n", session_->error_text().c_str());
   std::printf("peak memory %.0f MiB\n", usage_now().peak_mib);
   if (!panel_.message.empty()) std::printf("%s\n", panel_.message.c_str());
 }

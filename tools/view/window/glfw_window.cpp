@@ -33,9 +33,11 @@ class GlfwWindow final : public Window {
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
       auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(w));
       if (action != GLFW_PRESS) return;
+      if (ImGui::GetIO().WantTextInput) return;  // it is typed into the panel
       if (key == GLFW_KEY_F12) self->input_.screenshot = true;
       if (key == GLFW_KEY_M) self->input_.next_mode = true;
       if (key == GLFW_KEY_R) self->input_.reset = true;
+      if (key == GLFW_KEY_H) self->input_.hide = true;
       if (key == GLFW_KEY_ESCAPE) self->input_.close = true;
     });
     IMGUI_CHECKVERSION();
@@ -59,8 +61,11 @@ class GlfwWindow final : public Window {
     glfwTerminate();
   }
 
-  WindowInput poll() override {
-    glfwPollEvents();
+  WindowInput poll(double wait_s) override {
+    if (wait_s > 0)
+      glfwWaitEventsTimeout(wait_s);
+    else
+      glfwPollEvents();
     input_.close = input_.close || glfwWindowShouldClose(window_);
     glfwGetFramebufferSize(window_, &input_.width, &input_.height);
     const ImGuiIO& io = ImGui::GetIO();
