@@ -113,7 +113,9 @@ void LiveRenderer::Impl::set(const RenderRequest& request) {
   request_.settings.budget_mib = double(budget_.budget_bytes) / (1024.0 * 1024.0);
   asked_ = wanted;
   changed_ = true;
+#ifndef NEPHO_MUTANT_LIVE_OLD_ERROR
   error_.drop();
+#endif
   worker_.ask(request_, new_contents, ++last_request_);
 }
 

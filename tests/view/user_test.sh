@@ -27,7 +27,10 @@ viewer=
 fail() {
   echo "FAILED: $1"
   cat said
-  [ -z "$viewer" ] || kill "$viewer" 2> /dev/null || true
+  if [ -n "$viewer" ]; then
+    kill "$viewer" 2> /dev/null || true
+    wait "$viewer" || true
+  fi
   exit 1
 }
 begin() {
@@ -111,9 +114,7 @@ case $what in
     end
     "$program" render "$picture" -o "again.${picture##*.}" > /dev/null 2>&1
     "$program" compare "$picture" "again.${picture##*.}" --json > apart.json
-    "$program" render "$picture" -o again.ppm > /dev/null 2>&1
-    "$program" render ball.json -o first.ppm > /dev/null 2>&1
-    grep -q '"relative_rms": *{[^}]*"value": *0\(\.0\)\?[,}]' apart.json ||
+    grep -q '"same_bits": true' apart.json ||
       { cat apart.json; fail "render draws another picture than F12"; }
     # Eyes of the first and the last frame, and what they look at.
     ends() { tr -d ' \n' < "$1" | sed 's/"eye_m":/\n&/g' | grep "$2" |

@@ -45,6 +45,8 @@ class User {
 
   void key(const char* name, int held_ms) {
     send_key(KeyPress, name);
+    // A key may end the program, and nobody is told that it is let go.
+    XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });
     pause_ms(held_ms);
     send_key(KeyRelease, name);
   }

@@ -206,7 +206,7 @@ std::string ViewSession::error_text() const {
   if (!error_failure_.empty()) return "error: not known: " + error_failure_;
   if (opened_.request.settings.probe_pixels <= 0) return "error: not measured (0 probe pixels)";
   if (awaits_error()) return "error: being measured";
-  return at_rest() ? "error: not known" : "error: not known while moving";
+  return at_rest() ? "error: not known" : "error: not known before it is at rest";
 }
 
 // Cost goes with the pixels: coarser at once, finer a step at a time.

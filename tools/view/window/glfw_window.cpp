@@ -113,6 +113,9 @@ class GlfwWindow final : public Window {
     }
     draw_panel(panel);
     ImGui::Render();
+    // Dear ImGui puts back the program that it finds, and that of a scene before this one, which is
+    // in use though deleted, would then be gone.
+    glUseProgram(0);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(window_);
   }
