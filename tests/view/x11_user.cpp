@@ -3,7 +3,8 @@
 //
 //   x11_user TITLE key NAME            pressed and let go, by its X11 name: F12, h
 //   x11_user TITLE hold NAME MS
-//   x11_user TITLE drag DX DY          pixels, with the left button held, from the middle
+//   x11_user TITLE drag DX DY [X Y]    pixels, with the left button held, from there or the middle
+//   x11_user TITLE type TEXT           letters, digits and . - :
 //   x11_user TITLE drop FILE...
 //   x11_user TITLE look PICTURE.ppm
 //
@@ -51,16 +52,35 @@ class User {
     send_key(KeyRelease, name);
   }
 
-  void drag(int dx, int dy) {
-    const int x = attributes_.width / 2, y = attributes_.height / 2;
+  void drag(int dx, int dy, int x, int y) {
     XWarpPointer(display_, None, window_, 0, 0, 0, 0, x, y);
+    XSync(display_, False);
+    pause_ms(120);  // a panel looks where the pointer is once a frame
     send_button(ButtonPress, x, y);
     for (int n = 1; n <= 10; ++n) {
       XWarpPointer(display_, None, window_, 0, 0, 0, 0, x + dx * n / 10, y + dy * n / 10);
       XSync(display_, False);
       pause_ms(40);
     }
+    pause_ms(120);
     send_button(ButtonRelease, x + dx, y + dy);
+  }
+
+  int width() const { return attributes_.width; }
+  int height() const { return attributes_.height; }
+
+  void type(const std::string& text) {
+    for (const char c : text) {
+      const std::string name = c == '.'   ? "period"
+                               : c == '-' ? "minus"
+                               : c == ':' ? "colon"
+                                          : std::string(1, c);
+      const bool shifted = c == ':' || (c >= 'A' && c <= 'Z');
+      send_key(KeyPress, name.c_str(), shifted);
+      pause_ms(60);
+      send_key(KeyRelease, name.c_str(), shifted);
+      pause_ms(60);
+    }
   }
 
   // https://www.freedesktop.org/wiki/Specifications/XDND/, version 5: enter, position, drop; the
@@ -139,7 +159,7 @@ class User {
             .count());
   }
 
-  void send_key(int type, const char* name) {
+  void send_key(int type, const char* name, bool shifted = false) {
     const KeySym symbol = XStringToKeysym(name);
     if (symbol == NoSymbol) fail(std::string("no key ") + name);
     XEvent event{};
@@ -149,6 +169,7 @@ class User {
     event.xkey.root = DefaultRootWindow(display_);
     event.xkey.time = now();
     event.xkey.same_screen = True;
+    event.xkey.state = shifted ? ShiftMask : 0;
     event.xkey.keycode = XKeysymToKeycode(display_, symbol);
     XSendEvent(display_, window_, True, KeyPressMask | KeyReleaseMask, &event);
     XSync(display_, False);
@@ -215,7 +236,11 @@ int main(int argc, char** argv) {
   const std::string what = argv[2];
   if (what == "key") user.key(argv[3], 80);
   if (what == "hold" && argc > 4) user.key(argv[3], std::atoi(argv[4]));
-  if (what == "drag" && argc > 4) user.drag(std::atoi(argv[3]), std::atoi(argv[4]));
+  if (what == "drag" && argc > 4)
+    user.drag(std::atoi(argv[3]), std::atoi(argv[4]),
+              argc > 6 ? std::atoi(argv[5]) : user.width() / 2,
+              argc > 6 ? std::atoi(argv[6]) : user.height() / 2);
+  if (what == "type") user.type(argv[3]);
   if (what == "drop") user.drop({argv + 3, argv + argc});
   if (what == "look") user.look(argv[3]);
   return 0;

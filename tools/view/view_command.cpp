@@ -47,6 +47,7 @@ class Viewer {
   void save_if_asked(bool asked);
   bool step(const WindowInput& input, double gap_s);  // true: there is a new picture
   double idle_s() const;
+  bool done() const;
   void await_error();
   fs::path free_name() const;
   bool frame();  // false: the end
@@ -56,6 +57,7 @@ class Viewer {
   SourceHost host_;
   std::optional<CameraPath> replay_;
   CameraPath record_;
+  std::size_t camera_ = 0;  // of the replay
   int most_frames_ = 0, coarse_ = 0;
   glm::ivec2 size_{0};  // of the window, and of pictures that are saved
   std::unique_ptr<Window> window_;
@@ -195,10 +197,12 @@ bool Viewer::step(const WindowInput& input, double gap_s) {
   } catch (const Error& error) {
     say(error.what(), true);
   }
-  if (replay_)
-    session_->set_camera(replay_->cameras[times_.size() % replay_->cameras.size()]);
-  else
+  if (replay_) {
+    if (!times_.empty() && (!options_.settle || session_->at_rest())) ++camera_;
+    session_->set_camera(replay_->cameras[camera_]);
+  } else {
     session_->act(input, std::min(gap_s, 0.1));
+  }
   const bool fresh = session_->advance(input.width, input.height);
   session_->fill(panel_);
   times_.push_back({});
@@ -241,8 +245,15 @@ bool Viewer::frame() {
   window_->show(picture.values.empty() ? nullptr : picture.values.data(), picture.width,
                 picture.height, panel_);
   // Nothing new: the next look need not be at once.
-  if (!fresh && !replay_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  return most_frames_ == 0 || int(times_.size()) < most_frames_;
+  if (!fresh && (!replay_ || options_.settle))
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  return !done();
+}
+
+bool Viewer::done() const {
+  if (options_.settle)
+    return session_ && camera_ + 1 == replay_->cameras.size() && session_->at_rest();
+  return most_frames_ > 0 && int(times_.size()) >= most_frames_;
 }
 
 // Of a run of so many frames that ended at rest.

@@ -245,8 +245,7 @@ void ViewSession::fill(Panel& panel) const {
   panel.go = false;
   panel.volumes.clear();
   for (std::size_t v = 0; v < shown_.size(); ++v)
-    panel.volumes.push_back(
-        {opened_.sources[v]->info().name + "##" + std::to_string(v), shown_[v]});
+    panel.volumes.push_back({opened_.sources[v]->info().name, shown_[v]});
   panel.time = time_;
   panel.times = 1;
   if (!opened_.sources.empty()) {
@@ -258,8 +257,8 @@ void ViewSession::fill(Panel& panel) const {
   }
   panel.busy = !at_rest();
   constexpr double kMib = 1024.0 * 1024.0;
-  panel.lines = {"height " + length_text(flight_.height_m()) + ", speed " +
-                     length_text(flight_.speed_m_per_s()) + "/s",
+  panel.lines = {(panel.planet ? "height " : "distance ") + length_text(flight_.height_m()) +
+                     ", speed " + length_text(flight_.speed_m_per_s()) + "/s",
                  line("frame %dx%d, %.1f ms", frame_.width, frame_.height, frame_ms_)};
   for (const PassReport& pass : status_.passes)
     panel.lines.push_back(line("  %s %.1f ms", pass.name.c_str(), 1e3 * pass.cpu_s));

@@ -48,6 +48,9 @@ void ViewSun::stand(std::int64_t utc_ns) {
   utc_ns_ = utc_ns;
   dated_ = true;
   sun_.to_sun = position.to_sun;
+#ifdef NEPHO_MUTANT_SUN_AT_ONE_DISTANCE
+  return;
+#endif
   if (distance_au_ == 0) return;
   sun_.irradiance_W_per_m2_nm *= std::pow(distance_au_ / position.distance_au, 2);
   distance_au_ = position.distance_au;
@@ -68,6 +71,7 @@ void ViewSun::fill(Panel& panel, const LocalAxes& at) const {
   panel.sun_elevation_deg = angles.y;
   panel.sun_hour = hour_of(utc_ns_);
   panel.sun_utc_typed = false;
+  if (panel.sun_utc_edited) return;
   std::snprintf(panel.sun_utc.data(), panel.sun_utc.size(), "%s", utc_text(utc_ns_).c_str());
 }
 

@@ -41,6 +41,7 @@ struct Panel {
   bool planet = false, sun_dated = false;
   std::array<char, 32> sun_utc{};  // as utc_text() writes it; what was typed counts with
   bool sun_utc_typed = false;      // this
+  bool sun_utc_edited = false;     // not to be overwritten
   double sun_hour = 0;             // of that day
   double sun_azimuth_deg = 0, sun_elevation_deg = 0;
   // Where the camera is, and where it is to go: over a planet.

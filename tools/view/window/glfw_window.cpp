@@ -25,6 +25,8 @@ class GlfwWindow final : public Window {
   explicit GlfwWindow(GLFWwindow* window) : window_(window) {
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
+    // A key that was let go before a slow frame's end still counts in it.
+    glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
     glfwSetWindowUserPointer(window_, this);
     glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
       auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(w));

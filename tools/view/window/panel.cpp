@@ -11,6 +11,8 @@ namespace {
 constexpr float kWidth = 360, kMargin = 8, kLabel = 120;
 // In a smaller window the panel begins as its title bar.
 constexpr float kRoomAcross = 560, kRoomDown = 320;
+// In one less high, what is seldom touched begins closed.
+constexpr float kRoomForAll = 660;
 const ImVec4 kErrorColour{1.0f, 0.6f, 0.4f, 1.0f};
 constexpr const char* kKeys =
     "W S A D: ahead, back, left, right\n"
@@ -42,9 +44,12 @@ bool draw_sun(Panel& panel) {
     changed |= slider("sun elevation", panel.sun_elevation_deg, -20, 90, "%.1f deg");
     return changed;
   }
-  if (ImGui::InputText("UTC (Enter)", panel.sun_utc.data(), panel.sun_utc.size(),
-                       ImGuiInputTextFlags_EnterReturnsTrue))
-    panel.sun_utc_typed = changed = true;
+  // It counts when it is left: by Enter, Tab or a click elsewhere.
+  ImGui::InputText("UTC", panel.sun_utc.data(), panel.sun_utc.size(),
+                   ImGuiInputTextFlags_AutoSelectAll);
+  panel.sun_utc_edited = ImGui::IsItemActive();
+  panel.sun_utc_typed = ImGui::IsItemDeactivatedAfterEdit();
+  changed |= panel.sun_utc_typed;
   changed |= slider("hour", panel.sun_hour, 0, 23.99, "%.2f h");
   ImGui::Text("%.1f deg high, azimuth %.1f deg", panel.sun_elevation_deg, panel.sun_azimuth_deg);
   return changed;
@@ -90,8 +95,14 @@ bool draw_places(Panel& panel) {
 
 bool draw_volumes(Panel& panel) {
   bool changed = false;
-  for (Panel::Volume& volume : panel.volumes)
-    changed |= ImGui::Checkbox(volume.name.c_str(), &volume.shown);
+  int number = 0;
+  for (Panel::Volume& volume : panel.volumes) {
+    ImGui::PushID(number++);
+    changed |= ImGui::Checkbox("##shown", &volume.shown);
+    ImGui::SameLine();
+    ImGui::TextUnformatted(volume.name.c_str());  // "####" of a sequence is no label
+    ImGui::PopID();
+  }
   return changed;
 }
 
@@ -133,13 +144,13 @@ void draw_panel(Panel& panel) {
     changed |= ImGui::SliderInt("time", &panel.time, 0, panel.times - 1, panel.time_text.c_str());
   if (ImGui::CollapsingHeader("light", ImGuiTreeNodeFlags_DefaultOpen))
     changed |= draw_light(panel);
-  if (ImGui::CollapsingHeader("quality", ImGuiTreeNodeFlags_DefaultOpen))
+  if (ImGui::CollapsingHeader("quality", size.y < kRoomForAll ? 0 : ImGuiTreeNodeFlags_DefaultOpen))
     changed |= draw_quality(panel);
   if (ImGui::CollapsingHeader("layers", ImGuiTreeNodeFlags_DefaultOpen))
     changed |= draw_volumes(panel);
   if (panel.planet && ImGui::CollapsingHeader("places")) changed |= draw_places(panel);
   if (ImGui::CollapsingHeader("frames", ImGuiTreeNodeFlags_DefaultOpen)) {
-    ImGui::TextUnformatted(panel.busy ? "finer bricks and light are on the way" : "at rest");
+    ImGui::TextUnformatted(panel.busy ? "bricks, light or pixels are still to come" : "at rest");
     for (const std::string& line : panel.lines) ImGui::TextUnformatted(line.c_str());
     ImGui::TextUnformatted(panel.error_line.c_str());
   }
