@@ -13,6 +13,7 @@
 #include "gl/view_pass.h"
 #include "live/fingerprint.h"
 #include "live/light_batch.h"
+#include "live/live_error.h"
 #include "live/pixel_shares.h"
 #include "live/resident_tree.h"
 #include "live/tree_worker.h"
@@ -59,6 +60,7 @@ class LiveRenderer::Impl {
   bool whole() const { return !changed_ && shares_.whole(); }
   bool streaming() const { return next_ || !stale_.empty(); }
   LiveStatus status() const;
+  std::optional<ErrorEstimate> error(const HdrImage& frame);
 
  private:
   // The next tree, while it is uploaded and lit.
@@ -100,6 +102,7 @@ class LiveRenderer::Impl {
   std::optional<Next> next_;
   bool changed_ = false;  // since the last frame
   PixelShares shares_;
+  LiveError error_;  // ends before the worker, whose sources its tree reads
 };
 
 void LiveRenderer::Impl::set(const RenderRequest& request) {
@@ -111,11 +114,14 @@ void LiveRenderer::Impl::set(const RenderRequest& request) {
   request_.settings.budget_mib = double(budget_.budget_bytes) / (1024.0 * 1024.0);
   asked_ = wanted;
   changed_ = true;
+#ifndef NEPHO_MUTANT_LIVE_OLD_ERROR
+  error_.drop();
+#endif
   worker_.ask(request_, new_contents, ++last_request_, next_.has_value());
 }
 
 bool LiveRenderer::Impl::update() {
-  if (!next_)
+  if (!next_ && !error_.ending())  // no more trees at once than the budget was shared among
     if (auto tree = worker_.take()) begin(std::move(tree));
   if (next_)
     changed_ = advance() || changed_;
@@ -250,6 +256,19 @@ bool LiveRenderer::Impl::complete() const {
   return tree.complete || worker_.rested() == tree.number;
 }
 
+// The memory of the tree that the worker would make is the probe's.
+std::optional<ErrorEstimate> LiveRenderer::Impl::error(const HdrImage& frame) {
+  if (!at_rest() || !whole() || !shown_ || frame.width != request_.settings.width) {
+    error_.drop();
+    return std::nullopt;
+  }
+  const bool failed = worker_.failure().has_value();  // the frame shows an earlier request
+  if (!failed && request_.settings.probe_pixels > 0)
+    error_.begin(request_, shown_->shared_tree(), frame,
+                 double(budget_.tree_bytes) / (1024.0 * 1024.0));
+  return error_.result();
+}
+
 void LiveRenderer::Impl::bind(ResidentTree& tree, const FrameData& frame) {
   tree.bind(frame);
   const gl::MarchCounters none{};
@@ -309,7 +328,9 @@ LiveStatus LiveRenderer::Impl::status() const {
   LiveStatus status = counts_;
   status.budget_bytes = budget_.budget_bytes;
   status.gpu_bytes = budget_.gpu_bytes;
+  // The probes of the error line may take what a tree may: there is none being made then.
   std::uint64_t host_bytes = worker_.tree_bytes();
+  if (error_.under_way()) host_bytes += budget_.tree_bytes;
   status.trees_held = worker_.trees();
   for (const ResidentTree* tree : {shown_.get(), next_ ? next_->tree.get() : nullptr}) {
     if (!tree) continue;
@@ -360,6 +381,9 @@ bool LiveRenderer::streaming() const {
 }
 bool LiveRenderer::whole() const {
   return impl_->whole();
+}
+std::optional<ErrorEstimate> LiveRenderer::error(const HdrImage& frame) {
+  return impl_->error(frame);
 }
 LiveStatus LiveRenderer::status() const {
   return impl_->status();

@@ -61,6 +61,11 @@ class LiveRenderer {
   // The last frame is all that there is to see: update() says when there is more.
   bool whole() const;
   LiveStatus status() const;
+  // The error line of `frame`, the last one: worked out beside all else once it is whole and
+  // nothing is left to do, so to be asked for again and again; nothing until it is there, and again
+  // nothing from the next change on. Of settings.probe_pixels; finest bricks are read past what is
+  // remembered. Throws Error where a source failed at that.
+  std::optional<ErrorEstimate> error(const HdrImage& frame);
 
  private:
   class Impl;
