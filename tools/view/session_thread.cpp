@@ -41,6 +41,7 @@ void SessionThread::open(OpenedScene opened, const std::string& name) {
   const std::lock_guard lock(mutex_);
   wanted_.opened = std::move(opened);
   wanted_.opened_name = name;
+  ++posted_;
   wake_.notify_one();
 }
 
@@ -49,6 +50,7 @@ void SessionThread::act(const WindowInput& input, double seconds) {
   if (!wanted_.input) wanted_.input.emplace();
   add(*wanted_.input, input);
   wanted_.seconds += seconds;
+  ++posted_;
   wake_.notify_one();
 }
 
@@ -62,18 +64,20 @@ void SessionThread::apply(const Panel& panel) {
   wanted_.panel->sun_utc_typed |= typed;
   wanted_.panel_number = ++panels_posted_;
   wanted_.panel_scene = filled_from_;
+  ++posted_;
   wake_.notify_one();
 }
 
 void SessionThread::ask(Task task) {
   const std::lock_guard lock(mutex_);
   wanted_.tasks.push_back(std::move(task));
+  ++posted_;
   wake_.notify_one();
 }
 
-void SessionThread::wait_until_idle() {
+void SessionThread::wait_until_handled() {
   std::unique_lock lock(mutex_);
-  idle_.wait(lock, [&] { return ended_by_ || (!working_ && !wanted_.any()); });
+  handled_one_.wait(lock, [&, all = posted_] { return ended_by_ || handled_ >= all; });
 }
 
 // What is typed, dragged or said in the window is its own.
@@ -165,7 +169,7 @@ void SessionThread::run(Window& window) {
   }
   session_.reset();  // while its context is current
   window.leave_second_context();
-  idle_.notify_all();
+  handled_one_.notify_all();
 }
 
 bool SessionThread::steps_left() const {
@@ -174,8 +178,8 @@ bool SessionThread::steps_left() const {
 
 bool SessionThread::wait_for_wanted(Wanted& wanted) {
   std::unique_lock lock(mutex_);
-  working_ = false;
-  idle_.notify_all();
+  handled_ = taken_;
+  handled_one_.notify_all();
   const auto something = [&] { return stop_ || wanted_.any(); };
   const bool flies = options_.replay && flown_ && (!options_.settle || at_rest_);
   if (!steps_left() || (at_rest_ && !flies))
@@ -184,7 +188,7 @@ bool SessionThread::wait_for_wanted(Wanted& wanted) {
     wake_.wait_for(lock, kLook, something);
   if (stop_) return false;
   wanted = std::exchange(wanted_, {});
-  working_ = true;
+  taken_ = posted_;
   return true;
 }
 

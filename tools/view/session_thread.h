@@ -40,7 +40,7 @@ class SessionThread {
   void apply(const Panel& panel);
   // Between two steps; what it returns (but for nothing) or throws becomes news.
   void ask(std::function<std::string(ViewSession&)> task);
-  void wait_until_idle();  // all of this is done
+  void wait_until_handled();  // all that was told before
 
   // All but what a user has just changed in the panel. True where the picture is a new one.
   bool fill(Panel& panel);
@@ -90,9 +90,10 @@ class SessionThread {
 
   const Options options_;
   mutable std::mutex mutex_;
-  std::condition_variable wake_, idle_;
+  std::condition_variable wake_, handled_one_;
   Wanted wanted_;
-  bool stop_ = false, working_ = false;
+  bool stop_ = false;
+  std::uint64_t posted_ = 0, taken_ = 0, handled_ = 0;  // numbers of what crossed
   std::exception_ptr ended_by_;
   std::vector<News> news_;
   // What crosses to the window.

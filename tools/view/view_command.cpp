@@ -278,10 +278,10 @@ void Viewer::run() {
   last_cpu_s_ = thread_cpu_s();
   while (frame()) {
   }
-  session_->wait_until_idle();
+  session_->wait_until_handled();
   if (options_.screenshot && session_->has_session()) {
     save(*options_.screenshot);
-    session_->wait_until_idle();
+    session_->wait_until_handled();
     for (const SessionThread::News& news : session_->take_news())
       if (news.error)
         throw Error(*news.error);
@@ -302,7 +302,7 @@ std::string Viewer::await_error() {
     text = session.error_text();
     return std::string();
   });
-  session_->wait_until_idle();
+  session_->wait_until_handled();
   session_->check();
   return text;
 }
