@@ -55,8 +55,8 @@ void SessionThread::act(const WindowInput& input, double seconds) {
 }
 
 void SessionThread::apply(const Panel& panel) {
-  if (!panel.changed) return;
   const std::lock_guard lock(mutex_);
+  if (!panel.changed || !has_session_) return;
   const bool go = wanted_.panel && wanted_.panel->go;
   const bool typed = wanted_.panel && wanted_.panel->sun_utc_typed;
   wanted_.panel = panel;
