@@ -13,6 +13,7 @@
 #include "gl/view_pass.h"
 #include "live/fingerprint.h"
 #include "live/light_batch.h"
+#include "live/live_error.h"
 #include "live/pixel_shares.h"
 #include "live/resident_tree.h"
 #include "live/tree_worker.h"
@@ -53,11 +54,13 @@ class LiveRenderer::Impl {
   void set(const RenderRequest& request);
   bool update();
   bool at_rest() const;
+  bool complete() const;
   const RenderSettings& settings() const { return request_.settings; }
   HdrImage frame(int each);
   bool whole() const { return !changed_ && shares_.whole(); }
   bool streaming() const { return next_ || !stale_.empty(); }
   LiveStatus status() const;
+  std::optional<ErrorEstimate> error(const HdrImage& frame);
 
  private:
   // The next tree, while it is uploaded and lit.
@@ -99,6 +102,7 @@ class LiveRenderer::Impl {
   std::optional<Next> next_;
   bool changed_ = false;  // since the last frame
   PixelShares shares_;
+  LiveError error_;  // ends before the worker, whose sources its tree reads
 };
 
 void LiveRenderer::Impl::set(const RenderRequest& request) {
@@ -110,11 +114,14 @@ void LiveRenderer::Impl::set(const RenderRequest& request) {
   request_.settings.budget_mib = double(budget_.budget_bytes) / (1024.0 * 1024.0);
   asked_ = wanted;
   changed_ = true;
-  worker_.ask(request_, new_contents, ++last_request_);
+#ifndef NEPHO_MUTANT_LIVE_OLD_ERROR
+  error_.drop();
+#endif
+  worker_.ask(request_, new_contents, ++last_request_, next_.has_value());
 }
 
 bool LiveRenderer::Impl::update() {
-  if (!next_)
+  if (!next_ && !error_.ending())  // no more trees at once than the budget was shared among
     if (auto tree = worker_.take()) begin(std::move(tree));
   if (next_)
     changed_ = advance() || changed_;
@@ -143,6 +150,10 @@ void LiveRenderer::Impl::begin(std::unique_ptr<LiveTree> tree) {
 // One step; true where the tree has taken its place.
 bool LiveRenderer::Impl::advance() {
   Next& next = *next_;
+#if defined(NEPHO_MUTANT_LIVE_NO_PARENTS)
+  next.uploaded = next.tree->tree().leaves.size();
+  next.listed = true;
+#endif
   if (upload_some()) return false;
   if (!next.listed) {
     const LiveTree& tree = next.tree->tree();
@@ -236,7 +247,26 @@ void LiveRenderer::Impl::light_some(ResidentTree& tree, std::uint64_t light,
 bool LiveRenderer::Impl::at_rest() const {
   if (worker_.busy() || next_ || !stale_.empty()) return false;
   if (worker_.failure()) return true;
-  return shown_ && shown_->tree().complete && shown_->tree().number == last_request_;
+  return shown_ && complete() && shown_->tree().number == last_request_;
+}
+
+// As fine as asked for, and no finer for what was seen before.
+bool LiveRenderer::Impl::complete() const {
+  const LiveTree& tree = shown_->tree();
+  return tree.complete || worker_.rested() == tree.number;
+}
+
+// The memory of the tree that the worker would make is the probe's.
+std::optional<ErrorEstimate> LiveRenderer::Impl::error(const HdrImage& frame) {
+  if (!at_rest() || !whole() || !shown_ || frame.width != request_.settings.width) {
+    error_.drop();
+    return std::nullopt;
+  }
+  const bool failed = worker_.failure().has_value();  // the frame shows an earlier request
+  if (!failed && request_.settings.probe_pixels > 0)
+    error_.begin(request_, shown_->shared_tree(), frame,
+                 double(budget_.tree_bytes) / (1024.0 * 1024.0));
+  return error_.result();
 }
 
 void LiveRenderer::Impl::bind(ResidentTree& tree, const FrameData& frame) {
@@ -298,10 +328,13 @@ LiveStatus LiveRenderer::Impl::status() const {
   LiveStatus status = counts_;
   status.budget_bytes = budget_.budget_bytes;
   status.gpu_bytes = budget_.gpu_bytes;
-  // The tree that is being made may take all that a tree may.
-  std::uint64_t host_bytes = worker_.busy() ? budget_.tree_bytes : 0;
+  // The probes of the error line may take what a tree may: there is none being made then.
+  std::uint64_t host_bytes = worker_.tree_bytes();
+  if (error_.under_way()) host_bytes += budget_.tree_bytes;
+  status.trees_held = worker_.trees();
   for (const ResidentTree* tree : {shown_.get(), next_ ? next_->tree.get() : nullptr}) {
     if (!tree) continue;
+    ++status.trees_held;
     host_bytes += tree->tree().host_bytes();
     status.gpu_bytes += tree->gpu_bytes();
     if (tree->tree().planet) status.planet_bytes += tree->tree().planet->gpu_bytes();
@@ -310,7 +343,7 @@ LiveStatus LiveRenderer::Impl::status() const {
     const LiveTree& tree = shown_->tree();
     status.leaves = tree.leaves.size();
     for (const VolumeTree& volume : tree.forest.volumes) status.nodes += volume.nodes.size();
-    status.complete = tree.complete;
+    status.complete = complete();
     status.budget_bound = tree.forest.budget_bound;
   }
   const CachedSource::Counts cache = worker_.cache_counts();
@@ -348,6 +381,9 @@ bool LiveRenderer::streaming() const {
 }
 bool LiveRenderer::whole() const {
   return impl_->whole();
+}
+std::optional<ErrorEstimate> LiveRenderer::error(const HdrImage& frame) {
+  return impl_->error(frame);
 }
 LiveStatus LiveRenderer::status() const {
   return impl_->status();

@@ -25,6 +25,7 @@ struct LiveStatus {
   std::uint64_t bricks_read = 0, bricks_remembered = 0, bricks_uploaded = 0, tiles_lit = 0;
   std::uint64_t stale_tiles = 0;  // shown with light that was worked out in an earlier tree
   std::uint64_t trees = 0;        // taken over so far
+  int trees_held = 0;             // in memory, with what is being made
   std::uint64_t overruns = 0;     // rays of the last frame that llvmpipe cut off
   std::size_t programs = 0;
   std::vector<PassReport> passes;  // of the last frame
@@ -60,6 +61,11 @@ class LiveRenderer {
   // The last frame is all that there is to see: update() says when there is more.
   bool whole() const;
   LiveStatus status() const;
+  // The error line of `frame`, the last one: worked out beside all else once it is whole and
+  // nothing is left to do, so to be asked for again and again; nothing until it is there, and again
+  // nothing from the next change on. Of settings.probe_pixels; finest bricks are read past what is
+  // remembered. Throws Error where a source failed at that.
+  std::optional<ErrorEstimate> error(const HdrImage& frame);
 
  private:
   class Impl;

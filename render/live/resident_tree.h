@@ -21,6 +21,8 @@ class ResidentTree {
   ResidentTree& operator=(const ResidentTree&) = delete;
 
   const LiveTree& tree() const { return *tree_; }
+  // Its textures end with the last holder, who is to have the context.
+  std::shared_ptr<const LiveTree> shared_tree() const { return tree_; }
   std::uint32_t slot(std::size_t leaf) const { return held_[leaf]; }
   gl::PlanetPasses* planet() { return tree_->planet.get(); }
   const gl::Buffer& phases() const { return phases_; }
@@ -35,7 +37,7 @@ class ResidentTree {
       : tree_(std::move(tree)), slots_(slots) {}
   void upload(const ResidentTree* last);
 
-  std::unique_ptr<LiveTree> tree_;
+  std::shared_ptr<LiveTree> tree_;
   Slots& slots_;
   std::vector<std::uint32_t> held_;  // by leaf
   gl::Buffer frame_, volumes_, nodes_, bricks_, phases_, lit_, ice_;

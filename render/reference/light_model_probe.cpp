@@ -67,7 +67,8 @@ MeanSquare mean_square(std::span<const LightModelPixel> pixels, const std::vecto
 }  // namespace
 
 LightModelError measure_light_model(const Forest& cut, const RenderRequest& request,
-                                    std::span<const LightModelPixel> pixels) {
+                                    std::span<const LightModelPixel> pixels,
+                                    const std::atomic<bool>* stop) {
   const auto most = std::uint32_t(std::max(request.settings.probe_paths, 0));
   if (pixels.empty() || most < 2) return {};
   const PathTracer tracer(cut, request, {.exact_orders = kExactOrders});
@@ -77,11 +78,13 @@ LightModelError measure_light_model(const Forest& cut, const RenderRequest& requ
   for (std::uint32_t end = std::min(kFirstRound, most);; end = std::min(2 * end, most)) {
     tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
       for (std::uint32_t s = done; s < end; ++s) {
+        if (stop && *stop) return;
         Random random(request.settings.seed ^ kStream, pixels[p].pixel, s);
         tallies[p].add(tracer.sample(pixels[p].ray, random));
       }
     });
     done = end;
+    if (stop && *stop) return {};
     found = mean_square(pixels, tallies);
     std::uint64_t scatterings = 0;
     for (const Tally& tally : tallies) scatterings += tally.scatterings;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 
@@ -29,8 +30,10 @@ struct LightModelError {
 // were sent, or the next would bring their scatterings above 20000. A path is worth 13 times the
 // square of its light in noise: few pixels with many paths know more than many with few. Droplets'
 // phase functions are smoothed after four scatterings ("smoothed late orders": some percent, where
-// the light model misses tens). Same numbers for any number of threads.
+// the light model misses tens). Same numbers for any number of threads. Once `stop` is set it ends
+// within a path, and what it returns says nothing.
 LightModelError measure_light_model(const Forest& cut, const RenderRequest& request,
-                                    std::span<const LightModelPixel> pixels);
+                                    std::span<const LightModelPixel> pixels,
+                                    const std::atomic<bool>* stop = nullptr);
 
 }  // namespace nepho

@@ -21,7 +21,6 @@
 namespace nepho {
 namespace {
 
-constexpr double kFinestCache_MiB = 256;
 // Below the picture's own: what is finer still is left out of the term, and the line says so.
 constexpr int kFinerLevels = 3, kFinerLevelsOfPlanet = 1;
 constexpr std::size_t kBatch = 16;        // probes
@@ -154,6 +153,10 @@ bool negligible(const std::vector<Probe>& probes) {
   return count >= kLeastFiner && finer < kNegligible * kNegligible * integration;
 }
 
+bool stopped(const ProbeLimits& limits) {
+  return limits.stop && *limits.stop;
+}
+
 // kLightProbes of them, evenly in their order.
 std::vector<LightModelPixel> some_of(const std::vector<LightModelPixel>& pixels) {
   const std::size_t count = std::min(kLightProbes, pixels.size());
@@ -165,7 +168,8 @@ std::vector<LightModelPixel> some_of(const std::vector<LightModelPixel>& pixels)
 }  // namespace
 
 ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
-                             const HdrImage& picture, std::shared_ptr<const AirTables> tables) {
+                             const HdrImage& picture, std::shared_ptr<const AirTables> tables,
+                             const ProbeLimits& limits) {
   const RenderSettings& settings = request.settings;
   ErrorEstimate estimate;
   if (settings.probe_pixels <= 0) return estimate;
@@ -182,7 +186,7 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   const CutLevels cut_levels(cut);
   const NoisyCutLevels noisy_levels(cut, settings.seed);
   const int finer = planet ? kFinerLevelsOfPlanet : kFinerLevels;
-  const FinestLevels finest_levels(request.volumes, kFinestCache_MiB, &cut, finer);
+  const FinestLevels finest_levels(request.volumes, limits.finest_mib, &cut, finer);
   const RayMarch cut_march(cut_levels, request, {}, planet),
       noisy_march(noisy_levels, request, {}, planet);
   std::optional<RayMarch> finest_march;
@@ -194,11 +198,11 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   std::vector<Probe> probes(pixels.size());
   const auto each_of_batch = [&](std::size_t batch, const auto& work) {
     tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t p) {
-      if (p % batches == batch) work(p);
+      if (p % batches == batch && !stopped(limits)) work(p);
     });
   };
   std::size_t marched = 0;
-  for (; marched < batches && !settled(probes); ++marched)
+  for (; marched < batches && !settled(probes) && !stopped(limits); ++marched)
     each_of_batch(marched, [&](std::size_t p) {
       const Ray ray = ray_of(p);
       const MarchResult exact = cut_march.trace(ray);
@@ -221,7 +225,7 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
   std::size_t finer_probes = 0;
   for (std::size_t part = 0; finest_march && part < marched * parts; ++part) {
     const bool many = finer_probes >= kFewFiner && finest_levels.bricks_read() >= kManyBricks;
-    if (planet && (many || negligible(probes))) break;
+    if (stopped(limits) || (planet && (many || negligible(probes)))) break;
     each_of_batch(part / parts, [&](std::size_t p) {
       if (p / batches % parts != part % parts) return;
       probes[p].finest = luminance(finest_march->trace(ray_of(p)).radiance_W_per_m2_sr_nm);
@@ -230,6 +234,7 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
     finer_probes = std::size_t(std::ranges::count_if(probes, &Probe::marched_finest));
   }
 
+  if (stopped(limits)) return {};
   std::vector<PixelPair> integration, level_of_detail, quantisation, light_model;
   std::vector<LightModelPixel> light_pixels;
   for (std::size_t p = 0; p < probes.size(); ++p) {
@@ -252,7 +257,9 @@ ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
     *term /= 3;
 #endif
   estimate.light_model_basis = "table, slabs";
-  const LightModelError measured = measure_light_model(cut, request, some_of(light_pixels));
+  const LightModelError measured =
+      measure_light_model(cut, request, some_of(light_pixels), limits.stop);
+  if (stopped(limits)) return {};
   if (measured.error >= 0) {
     estimate.light_model = measured.error;
     estimate.light_model_basis = std::to_string(measured.paths) + " paths a pixel";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "air/air_tables.h"
@@ -7,6 +8,11 @@
 #include "tree/forest.h"
 
 namespace nepho {
+
+struct ProbeLimits {
+  double finest_mib = 256;                  // for the finest bricks
+  const std::atomic<bool>* stop = nullptr;  // once it is set: ends within a ray, telling nothing
+};
 
 // The error line of a picture, measured on up to settings.probe_pixels of its pixels: drawn by
 // settings.seed, one from each of as many compact patches of the pixels that show some volume; over
@@ -24,9 +30,10 @@ namespace nepho {
 // 15 % of it; over a planet level of detail is left at 32 where it is under a tenth of that term.
 // `tables`: of the planet's air, as the picture was made with; null: made again. Same numbers for
 // any number of threads. Costs about three exact rays per probe, each with seven
-// shadow rays per cell; the finest bricks are kept in 256 MiB. Throws Error where a source fails.
+// shadow rays per cell. Throws Error where a source fails.
 ErrorEstimate estimate_error(const RenderRequest& request, const Forest& cut,
                              const HdrImage& picture,
-                             std::shared_ptr<const AirTables> tables = nullptr);
+                             std::shared_ptr<const AirTables> tables = nullptr,
+                             const ProbeLimits& limits = {});
 
 }  // namespace nepho

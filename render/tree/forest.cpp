@@ -85,6 +85,7 @@ class Refiner {
     while (!queue_.empty() && split_first()) {
     }
     forest_.budget_bound = !queue_.empty();
+    forest_.held = held_ || (any_hold_ && forest_.budget_bound);
     forest_.cost_bytes = cost(counts_);
     queue_.clear();
     summaries_.clear();
@@ -157,6 +158,19 @@ class Refiner {
 #if defined(NEPHO_MUTANT_FOREST_HOLD)
     hold = 1;
 #endif
+    const Worth worth = worth_of(info, summary, view, hold);
+    if (!worth.split) return;
+    queue_.insert({worth.priority, volume, key, index});
+    any_hold_ = any_hold_ || hold > 1;
+    held_ = held_ || !worth_of(info, summary, view, 1).split;
+  }
+
+  struct Worth {
+    double priority = 0;
+    bool split = false;
+  };
+  Worth worth_of(const VolumeInfo& info, const NodeSummary& summary,
+                 const ViewMetric::NodeView& view, double hold) const {
     const double error = hold * depth_error(info, summary, view);
     const double tolerance = refinement_.settings.tolerance;
     const double strong = info.refine_by_variance ? kStrong * tolerance : 1;
@@ -164,8 +178,7 @@ class Refiner {
     const double priority = voxel_pixels * -std::expm1(-error / strong);
     // Faint voxels may be larger, where all that is known of them is what they are likely to hide.
     const double pixels = info.refine_by_variance ? priority : voxel_pixels;
-    if (pixels > refinement_.settings.pixels_per_voxel && error > tolerance)
-      queue_.insert({priority, volume, key, index});
+    return {priority, pixels > refinement_.settings.pixels_per_voxel && error > tolerance};
   }
 
   // What a ray's optical depth in the node can be off by; for noise, what it is likely to be.
@@ -258,6 +271,7 @@ class Refiner {
   double budget_bytes_;
   Forest forest_;
   Counts counts_;
+  bool any_hold_ = false, held_ = false;
   std::set<Candidate> queue_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<NodeSummary>> summaries_;
 };

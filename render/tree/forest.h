@@ -58,6 +58,7 @@ struct VolumeTree {
 struct Forest {
   std::vector<VolumeTree> volumes;
   bool budget_bound = false;     // refinement stopped for memory, not because it was done
+  bool held = false;             // another one but for Refinement::was_split, or it may be
   std::uint64_t cost_bytes = 0;  // by Refinement::cost, never above the budget
 };
 

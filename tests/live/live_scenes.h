@@ -11,11 +11,11 @@
 namespace nepho::test {
 
 // Four puffs and a veil in a box 4 km wide: what is near the eye is refined, what is far is not.
-inline FieldSource puffs(double floor_m = 0) {
+inline FieldSource puffs(double floor_m = 0, int levels = 3) {
   const auto chart =
       std::make_shared<BoxChart>(glm::dvec3(-2000, -2000, floor_m + 500),
                                  glm::dmat3(4000., 0., 0., 0., 4000., 0., 0., 0., 2000.));
-  return FieldSource(chart, isotropic(3), [=](glm::dvec3 p) {
+  return FieldSource(chart, isotropic(levels), [=](glm::dvec3 p) {
     p.z -= floor_m;
     double sum = 0;
     for (int n = 0; n < 4; ++n) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "geo/place.h"
 #include "test_folder.h"
 #include "view/camera_path.h"
 
@@ -102,6 +103,32 @@ TEST(Flight, AFirstPersonStandsOnTheGround) {
   EXPECT_GT(glm::length(flight.camera().eye_m - before), 20);
 }
 
+TEST(Flight, GoesToAPlaceWithItsHeading) {
+  const Ellipsoid body = Ellipsoid::wgs84();
+  const glm::dvec3 eye = ecef_m(body, {10, 20, 3000});
+  PlanetGround ground{body, {}};
+  const LocalAxes from = ground.axes(eye);
+  const glm::dvec3 sight = 800.0 * from.east + 300.0 * from.north - 200.0 * from.up;
+  Flight flight({eye, eye + sight, from.up, 0.8}, ground, 1);
+  flight.go_to(-35.5, 178, 1200);
+  const GeodeticPoint there = geodetic_point(body, flight.camera().eye_m);
+  EXPECT_NEAR(there.latitude_deg, -35.5, 1e-9);
+  EXPECT_NEAR(there.longitude_deg, 178, 1e-9);
+  EXPECT_NEAR(there.height_m, 1200, 1e-6);
+  const LocalAxes to = ground.axes(flight.camera().eye_m);
+  const glm::dvec3 ahead = flight.camera().target_m - flight.camera().eye_m;
+  EXPECT_NEAR(glm::dot(ahead, to.east), 800, 1e-6);
+  EXPECT_NEAR(glm::dot(ahead, to.north), 300, 1e-6);
+  EXPECT_NEAR(glm::dot(ahead, to.up), -200, 1e-6);
+  flight.go_to(-35.5, 178, -50);  // never below
+  EXPECT_NEAR(geodetic_point(body, flight.camera().eye_m).height_m, Flight::kLeastHeight_m, 1e-3);
+  const glm::dvec3 before = flight.camera().eye_m;
+  EXPECT_THROW(flight.go_to(95, 0, 1000), Error);
+  EXPECT_EQ(flight.camera().eye_m, before);
+  Flight free({{0, -5000, 0}, {0, 0, 0}, {0, 0, 1}, 0.8}, std::nullopt, 5000);
+  EXPECT_THROW(free.go_to(0, 0, 1000), Error);
+}
+
 TEST(CameraPath, IsTheSameWhenItIsRead) {
   const TestFolder folder("camera_path");
   CameraPath path;
@@ -148,9 +175,21 @@ TEST(FrameTimes, AreSummedUpByPass) {
   const std::vector<PassTimes> times = summarise(frames);
   ASSERT_EQ(times.size(), 2u);
   EXPECT_EQ(times[0].name, "gap");
+  EXPECT_EQ(times[0].clock, "wall");
+  EXPECT_EQ(times[1].clock, "cpu");
   EXPECT_DOUBLE_EQ(times[0].median_ms, 20);
   EXPECT_DOUBLE_EQ(times[0].worst_ms, 400);
   EXPECT_DOUBLE_EQ(times[1].worst_ms, 200);
+  // A frame without a picture has no passes; a GPU that has a clock is told apart.
+  frames.push_back({5, 0, {}});
+  frames.push_back({5, 0, {{"view", 0.2, 0.05}}});
+  const std::vector<PassTimes> more = summarise(frames);
+  ASSERT_EQ(more.size(), 3u);
+  EXPECT_EQ(more[0].frames, 7u);
+  EXPECT_EQ(more[1].frames, 6u);
+  EXPECT_EQ(more[2].clock, "gpu");
+  EXPECT_DOUBLE_EQ(more[2].median_ms, 50);
+  frames.resize(5);
   const std::string text = gap_histogram(frames);
   EXPECT_NE(text.find("below 17 ms: 2"), std::string::npos) << text;
   EXPECT_NE(text.find("longest block 400 ms, at most 100 ms of CPU"), std::string::npos) << text;

@@ -227,6 +227,8 @@ void add_view_options(CLI::App& command, ViewOptions& o) {
   CLI::Option* path =
       command.add_option("--path", o.path, "fly along what --record wrote, and end")
           ->excludes(frames);
+  command.add_flag("--settle", o.settle, "of --path: each camera stays until nothing is to come")
+      ->needs(path);
   command.add_option("--record", o.record, "write the flight to this file")->excludes(path);
   command.add_option("--bench", o.bench, "times of all passes, median and worst: .csv or .json");
   command.add_option("--screenshot", o.screenshot, "at the end, a picture at full quality");

@@ -247,7 +247,10 @@ OpenedScene open_scene(const SourceHost& host, Scene scene) {
   if (const auto body = body_of(opened)) {
     const PlanetShot shot = frame_on_planet(opened, *body);
     camera = shot.camera;
+    opened.sun_utc_ns = shot.sun_utc_ns;
     // Above the air, and the farther the fainter.
+    if (opened.scene.planet && !opened.scene.sun.irradiance_W_per_m2_nm)
+      opened.sun_distance_au = shot.sun_distance_au;
     if (opened.scene.planet)
       irradiance = kSunOutside_W_per_m2_nm / (shot.sun_distance_au * shot.sun_distance_au);
   } else {

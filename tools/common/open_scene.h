@@ -16,8 +16,12 @@ struct OpenedScene {
   Scene scene;  // camera, sun and sky are filled in: what a picture's metadata stores
   std::vector<std::unique_ptr<BrickSource>> sources;
   std::shared_ptr<const SurfaceMap> terrain;  // the request's; null without one
-  RenderRequest request;                 // points into `sources` and `terrain`
-  std::vector<std::string> assumptions;  // what was not in the data, one sentence each
+  RenderRequest request;                      // points into `sources` and `terrain`
+  std::vector<std::string> assumptions;       // what was not in the data, one sentence each
+  // Where the sun was put by a date, and the distance that its irradiance is of (0: as the scene
+  // says).
+  std::optional<std::int64_t> sun_utc_ns = {};
+  double sun_distance_au = 0;
 };
 
 std::unique_ptr<BrickSource> open_volume(const SourceHost& host, const VolumeSpec& volume);

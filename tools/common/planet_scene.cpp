@@ -68,7 +68,7 @@ class Framing {
     find_camera();
     find_sun_after_camera();
     check_eye();
-    return {view_.camera, sun_distance_au_};
+    return {view_.camera, sun_distance_au_, sun_utc_ns_};
   }
 
  private:
@@ -200,6 +200,7 @@ class Framing {
     sun.to_sun = position.to_sun;
     sun.utc_ns.reset();
     sun_distance_au_ = position.distance_au;
+    sun_utc_ns_ = utc_ns;
     sun_utc_ = utc_text(*utc_ns);
   }
 
@@ -304,6 +305,7 @@ class Framing {
       return;
     }
     sun_distance_au_ = 1;
+    sun_utc_ns_.reset();
     put_sun(axes,
             text("%s there at the valid time, the sun %.0f degrees high; --sun %s for the real one",
                  real_deg.y < 0 ? "night" : "low sun", real_deg.y, sun_utc_.c_str()));
@@ -335,6 +337,7 @@ class Framing {
   std::optional<CloudMap> map_;      // at the times chosen so far
   bool day_ = false, real_sun_ = false;
   double sun_distance_au_ = 1;
+  std::optional<std::int64_t> sun_utc_ns_;
   std::string sun_utc_;
   PlanetView view_;
 };

@@ -30,6 +30,7 @@ std::int64_t utc_of(const VolumeInfo& info, double time_s);
 struct PlanetShot {
   Camera camera;
   double sun_distance_au = 1;
+  std::optional<std::int64_t> sun_utc_ns = {};  // the date that the sun stands as at
 };
 PlanetShot frame_on_planet(OpenedScene& opened, const Ellipsoid& body);
 

@@ -74,15 +74,19 @@ void write_camera_path(const fs::path& file, const CameraPath& path) {
 }
 
 std::vector<PassTimes> summarise(const std::vector<FrameTimes>& frames) {
-  std::map<std::string, std::vector<double>> all;
+  std::map<std::pair<std::string, std::string>, std::vector<double>> all;
   for (const FrameTimes& frame : frames) {
-    all["gap"].push_back(frame.gap_ms);
-    for (const PassReport& pass : frame.passes) all[pass.name].push_back(1e3 * pass.cpu_s);
+    all[{"gap", "wall"}].push_back(frame.gap_ms);
+    for (const PassReport& pass : frame.passes) {
+      all[{pass.name, "cpu"}].push_back(1e3 * pass.cpu_s);
+      if (pass.gpu_s >= 0) all[{pass.name, "gpu"}].push_back(1e3 * pass.gpu_s);
+    }
   }
   std::vector<PassTimes> result;
-  for (auto& [name, values] : all) {
+  for (auto& [key, values] : all) {
     std::ranges::sort(values);
-    result.push_back({name, values.size(), values[values.size() / 2], values.back()});
+    result.push_back(
+        {key.first, key.second, values.size(), values[values.size() / 2], values.back()});
   }
   return result;
 }
@@ -92,6 +96,7 @@ void write_pass_times(const fs::path& file, const std::vector<PassTimes>& times)
     json rows = json::array();
     for (const PassTimes& t : times)
       rows.push_back({{"pass", t.name},
+                      {"clock", t.clock},
                       {"frames", t.frames},
                       {"median_ms", t.median_ms},
                       {"worst_ms", t.worst_ms}});
@@ -99,11 +104,11 @@ void write_pass_times(const fs::path& file, const std::vector<PassTimes>& times)
   }
   if (file.extension() != ".csv")
     throw Error({"unknown kind of table", file.string(), ".csv or .json", "", ""});
-  std::string text = "pass,frames,median_ms,worst_ms\n";
+  std::string text = "pass,frames,median_ms,worst_ms,clock\n";
   for (const PassTimes& t : times) {
     char line[200];
-    std::snprintf(line, sizeof line, "%s,%zu,%.3f,%.3f\n", t.name.c_str(), t.frames, t.median_ms,
-                  t.worst_ms);
+    std::snprintf(line, sizeof line, "%s,%zu,%.3f,%.3f,%s\n", t.name.c_str(), t.frames, t.median_ms,
+                  t.worst_ms, t.clock.c_str());
     text += line;
   }
   write_text(file, text);

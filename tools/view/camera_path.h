@@ -22,9 +22,10 @@ struct FrameTimes {
   double cpu_ms = 0;  // of it the thread's own CPU time
   std::vector<PassReport> passes;
 };
-// Of gaps, and of each pass's CPU time in ms: median and worst.
+// Of gaps by the wall, of each pass by the process's CPU time, and by the GPU where it has a clock:
+// median and worst.
 struct PassTimes {
-  std::string name;
+  std::string name, clock;  // wall, cpu or gpu
   std::size_t frames = 0;
   double median_ms = 0, worst_ms = 0;
 };

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "core/error.h"
+#include "geo/place.h"
+
 namespace nepho {
 namespace {
 
@@ -30,6 +33,19 @@ void Flight::set_camera(const Camera& camera) {
 void Flight::set_mode(FlightMode mode) {
   mode_ = mode;
   if (mode == FlightMode::kFirstPerson) keep_above_ground();
+}
+
+void Flight::go_to(double latitude_deg, double longitude_deg, double height_m) {
+  if (!ground_) throw Error({"places are on a planet", "go to", "", "a scene without one", ""});
+  GeodeticPoint point{latitude_deg, longitude_deg, 0};
+  point.height_m = ground_->height_m(ecef_m(ground_->body, point)) + height_m;
+  const glm::dvec3 eye = ecef_m(ground_->body, point), sight = camera_.target_m - camera_.eye_m;
+  const LocalAxes from = ground_->axes(camera_.eye_m), to = ground_->axes(eye);
+  camera_.eye_m = eye;
+  camera_.target_m = eye + glm::dot(sight, from.east) * to.east +
+                     glm::dot(sight, from.north) * to.north + glm::dot(sight, from.up) * to.up;
+  camera_.up = to.up;
+  keep_above_ground();
 }
 
 glm::dvec3 Flight::up_at(const glm::dvec3& place) const {

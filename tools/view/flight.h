@@ -22,6 +22,9 @@ class Flight {
   const Camera& camera() const { return camera_; }
   void set_camera(const Camera& camera);
   void reset() { set_camera(start_); }
+  // Over a planet, `height_m` over the ground there; the heading stays. Throws Error where there is
+  // no planet or no such place.
+  void go_to(double latitude_deg, double longitude_deg, double height_m);
 
   // What was done in `seconds`. True where the camera is another.
   bool move(const WindowInput& input, double seconds);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/log.h"
+
 namespace nepho {
 namespace {
 
@@ -35,9 +37,11 @@ SessionThread::~SessionThread() {
   thread_.join();
 }
 
-void SessionThread::open(OpenedScene opened) {
+void SessionThread::open(OpenedScene opened, const std::string& name) {
   const std::lock_guard lock(mutex_);
   wanted_.opened = std::move(opened);
+  wanted_.opened_name = name;
+  ++posted_;
   wake_.notify_one();
 }
 
@@ -46,41 +50,56 @@ void SessionThread::act(const WindowInput& input, double seconds) {
   if (!wanted_.input) wanted_.input.emplace();
   add(*wanted_.input, input);
   wanted_.seconds += seconds;
+  ++posted_;
   wake_.notify_one();
 }
 
 void SessionThread::apply(const Panel& panel) {
-  if (!panel.changed) return;
   const std::lock_guard lock(mutex_);
+  if (!panel.changed || !has_session_) return;
+  const bool go = wanted_.panel && wanted_.panel->go;
+  const bool typed = wanted_.panel && wanted_.panel->sun_utc_typed;
   wanted_.panel = panel;
+  wanted_.panel->go |= go;
+  wanted_.panel->sun_utc_typed |= typed;
   wanted_.panel_number = ++panels_posted_;
   wanted_.panel_scene = filled_from_;
+  ++posted_;
   wake_.notify_one();
 }
 
 void SessionThread::ask(Task task) {
   const std::lock_guard lock(mutex_);
   wanted_.tasks.push_back(std::move(task));
+  ++posted_;
   wake_.notify_one();
 }
 
-void SessionThread::wait_for_tasks() {
+void SessionThread::wait_until_handled() {
   std::unique_lock lock(mutex_);
-  idle_.wait(lock, [&] { return ended_by_ || (!working_ && wanted_.tasks.empty()); });
+  handled_one_.wait(lock, [&, all = posted_] { return ended_by_ || handled_ >= all; });
 }
 
+// What is typed, dragged or said in the window is its own.
 bool SessionThread::fill(Panel& panel) {
   const std::lock_guard lock(mutex_);
   if (has_session_ && panels_used_ == panels_posted_) {
     Panel filled = panel_;
     filled.message = panel.message;
     filled.message_is_error = panel.message_is_error;
+    filled.dragged_budget_mib = panel.dragged_budget_mib;
+    filled.sun_utc_edited = panel.sun_utc_edited;
+    if (panel.sun_utc_edited) filled.sun_utc = panel.sun_utc;
+    if (filled_from_ == panel_of_) filled.go_to = panel.go_to;
     panel = std::move(filled);
     filled_from_ = panel_of_;
   } else if (has_session_) {  // what was changed is not there yet: it is not taken back
     panel.lines = panel_.lines;
+    panel.error_line = panel_.error_line;
+    panel.place = panel_.place;
     panel.busy = true;
   }
+  panel.go = panel.sun_utc_typed = false;
   panel.changed = false;
   if (!fresh_) return false;
   picture_ = std::move(fresh_);
@@ -93,7 +112,7 @@ bool SessionThread::has_session() const {
 }
 bool SessionThread::done() const {
   const std::lock_guard lock(mutex_);
-  return options_.most_steps > 0 && steps_ >= options_.most_steps;
+  return done_;
 }
 bool SessionThread::at_rest() const {
   const std::lock_guard lock(mutex_);
@@ -102,6 +121,10 @@ bool SessionThread::at_rest() const {
 LiveStatus SessionThread::status() const {
   const std::lock_guard lock(mutex_);
   return status_;
+}
+std::optional<std::string> SessionThread::error() const {
+  const std::lock_guard lock(mutex_);
+  return error_;
 }
 std::vector<FrameTimes> SessionThread::times() const {
   const std::lock_guard lock(mutex_);
@@ -136,7 +159,7 @@ void SessionThread::run(Window& window) {
         width_ = wanted.input->width;
         height_ = wanted.input->height;
       }
-      if (wanted.opened) show(std::move(*wanted.opened));
+      if (wanted.opened) show(std::move(*wanted.opened), wanted.opened_name);
       do_tasks(wanted.tasks);
       if (steps_left()) step(wanted);
     }
@@ -146,33 +169,34 @@ void SessionThread::run(Window& window) {
   }
   session_.reset();  // while its context is current
   window.leave_second_context();
-  idle_.notify_all();
+  handled_one_.notify_all();
 }
 
 bool SessionThread::steps_left() const {
-  return session_ && width_ > 0 && (options_.most_steps == 0 || steps_ < options_.most_steps);
+  return session_ && width_ > 0 && !done_;
 }
 
 bool SessionThread::wait_for_wanted(Wanted& wanted) {
   std::unique_lock lock(mutex_);
-  working_ = false;
-  idle_.notify_all();
+  handled_ = taken_;
+  handled_one_.notify_all();
   const auto something = [&] { return stop_ || wanted_.any(); };
-  const bool flies = options_.replay && flown_;
+  const bool flies = options_.replay && flown_ && (!options_.settle || at_rest_);
   if (!steps_left() || (at_rest_ && !flies))
     wake_.wait(lock, something);
   else if (!flies && !fresh_step_ && !session_->streaming())
     wake_.wait_for(lock, kLook, something);
   if (stop_) return false;
   wanted = std::exchange(wanted_, {});
-  working_ = true;
+  taken_ = posted_;
   return true;
 }
 
-void SessionThread::show(OpenedScene opened) {
+void SessionThread::show(OpenedScene opened, const std::string& name) {
   try {
     session_ = std::make_unique<ViewSession>(std::move(opened), options_.coarse);
     ++scene_;
+    log(LogLevel::kInfo, "opened " + name);
     const std::lock_guard lock(mutex_);
     fresh_.reset();
   } catch (const Error& error) {
@@ -184,7 +208,8 @@ void SessionThread::do_tasks(const std::vector<Task>& tasks) {
   for (const Task& task : tasks) {
     if (!session_) continue;
     try {
-      add_news({task(*session_), {}});
+      std::string text = task(*session_);
+      if (!text.empty()) add_news({std::move(text), {}});
     } catch (const Error& error) {
       add_news({"", error});
     }
@@ -194,16 +219,26 @@ void SessionThread::do_tasks(const std::vector<Task>& tasks) {
 void SessionThread::step(const Wanted& wanted) {
   const auto now = Clock::now();
   const double cpu_s = thread_cpu_s();
-  if (wanted.panel && wanted.panel_scene == scene_) session_->apply(*wanted.panel);
-  if (options_.replay)
-    session_->set_camera(
-        options_.replay->cameras[std::size_t(steps_) % options_.replay->cameras.size()]);
-  else if (wanted.input)
-    session_->act(*wanted.input, std::min(wanted.seconds, kLongestMove_s));
+  move(wanted);
   fresh_step_ = session_->advance(width_, height_);
   publish(wanted);
   if (fresh_step_ || session_->status().failure) flown_ = true;
   if (flown_ || !options_.replay) note_step(now, cpu_s);
+}
+
+void SessionThread::move(const Wanted& wanted) {
+  if (wanted.panel && wanted.panel_scene == scene_) try {
+      session_->apply(*wanted.panel);
+    } catch (const Error& error) {
+      add_news({"", error});
+    }
+  if (options_.replay) {
+    const std::vector<Camera>& cameras = options_.replay->cameras;
+    if (steps_ > 0 && (!options_.settle || at_rest_) && camera_ + 1 < cameras.size()) ++camera_;
+    session_->set_camera(cameras[camera_]);
+  } else if (wanted.input) {
+    session_->act(*wanted.input, std::min(wanted.seconds, kLongestMove_s));
+  }
 }
 
 void SessionThread::note_step(Clock::time_point begin, double cpu_s) {
@@ -214,9 +249,12 @@ void SessionThread::note_step(Clock::time_point begin, double cpu_s) {
   }
   last_ = begin;
   last_cpu_s_ = cpu_s;
-  if (options_.times) times_.push_back({0, 0, status_.passes});
+  if (options_.times) times_.push_back({});
+  if (options_.times && fresh_step_) times_.back().passes = status_.passes;
   if (options_.record) recorded_.cameras.push_back(session_->camera());
   ++steps_;
+  done_ = options_.settle ? camera_ + 1 == options_.replay->cameras.size() && at_rest_
+                          : options_.most_steps > 0 && steps_ >= options_.most_steps;
 }
 
 void SessionThread::publish(const Wanted& wanted) {
@@ -232,6 +270,8 @@ void SessionThread::publish(const Wanted& wanted) {
   has_session_ = true;
   at_rest_ = session_->at_rest();
   status_ = session_->status();
+  error_.reset();
+  if (session_->error()) error_ = session_->error_text();
 }
 
 }  // namespace nepho

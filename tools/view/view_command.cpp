@@ -1,4 +1,5 @@
 // nephoscope view: window, session, files that are opened beside it.
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -34,8 +35,9 @@ constexpr const char* kPlanet = R"({
              "look_at": {"lat_deg": -20.0, "lon_deg": -35.45, "height_m": 2000}, "fov_deg": 45}
 })";
 
-// A frame of the window is there so soon after the last, and while nothing is new, so soon.
-constexpr std::chrono::milliseconds kNextFrame{8}, kIdleFrame{30};
+// From one frame of the window to the next: after a new picture, while more is to come, and at
+// rest. Whoever reads, refines or marches has the processor meanwhile.
+constexpr double kNext_s = 0.008, kBusy_s = 0.02, kRest_s = 0.05;
 
 class Viewer {
  public:
@@ -43,6 +45,7 @@ class Viewer {
   void run();
 
  private:
+  glm::ivec2 first_size() const;
   SessionThread::Options session_options() const;
   void open(const RenderOptions& options);
   void take_opened();
@@ -52,7 +55,9 @@ class Viewer {
   void refuse(const Error& error);
   void save(const fs::path& output);
   fs::path free_name() const;
+  double wait_s() const;
   bool frame();  // false: the end
+  std::string await_error();
   void report();
 
   const ViewOptions& options_;
@@ -61,13 +66,17 @@ class Viewer {
   std::optional<CameraPath> replay_;
   int most_frames_ = 0, coarse_ = 0;
   glm::ivec2 size_{960, 540};  // of the window at first, and of pictures that are saved
+  glm::ivec2 across_{0};       // of the window now
   std::unique_ptr<Window> window_;
   std::unique_ptr<SessionThread> session_;  // before the window in destruction
   std::future<OpenedScene> opening_;
   bool tried_one_ = false;    // scene of the command line
   bool scene_given_ = false;  // the session has one, or is about to
+  std::string opening_name_;
   Panel panel_;
-  std::vector<FrameTimes> gaps_;  // of the window, while they are counted
+  bool hidden_ = false, fresh_ = false;  // the panel; the picture that was shown last
+  std::string told_;                     // the last error line in the log
+  std::vector<FrameTimes> gaps_;         // of the window, while they are counted
   Clock::time_point last_;
   double last_cpu_s_ = 0;
 };
@@ -86,7 +95,7 @@ Viewer::Viewer(const ViewOptions& options)
   if (options.coarse && coarse_ != 1 && coarse_ != 2 && coarse_ != 4 && coarse_ != 8)
     throw Error({"bad value", "--coarse", "1, 2, 4 or 8", *options.coarse, ""});
   if (replay_) most_frames_ = int(replay_->cameras.size());
-  if (options.render.size) size_ = size_value("--size", *options.render.size);
+  size_ = first_size();
   window_ = open_window(default_module_folders(), size_.x, size_.y, "Nephoscope");
   log(LogLevel::kInfo, window_->description());
   panel_.scene = "opening";
@@ -98,8 +107,28 @@ Viewer::Viewer(const ViewOptions& options)
   open(options.render);
 }
 
+// What is known before anything large is read: pictures may take long to say theirs.
+glm::ivec2 Viewer::first_size() const {
+  const RenderOptions& render = options_.render;
+  if (render.size) return size_value("--size", *render.size);
+  const auto is_picture = [](const std::string& file) {
+    return input_kind(file) == InputKind::kPicture;
+  };
+  try {
+    if (render.inputs.empty() || std::ranges::any_of(render.inputs, is_picture)) return size_;
+    const RenderSettings settings = scene_from(render, pictures_).render;
+    return {settings.width, settings.height};
+  } catch (const Error&) {  // told where it is opened
+    return size_;
+  }
+}
+
 SessionThread::Options Viewer::session_options() const {
-  return {coarse_, replay_, most_frames_, options_.record.has_value(),
+  return {coarse_,
+          replay_,
+          options_.settle,
+          most_frames_,
+          options_.record.has_value(),
           most_frames_ > 0 || options_.bench.has_value()};
 }
 
@@ -111,10 +140,9 @@ void Viewer::say(const std::string& text, bool error) {
 
 // Beside the window, which goes on with what it has: files, modules and automatic views take long.
 void Viewer::open(const RenderOptions& options) {
-  const std::string name = options.inputs.empty()
-                               ? "the procedural planet"
-                               : fs::path(options.inputs.front()).filename().string();
-  if (!panel_.message_is_error) say("opening " + name, false);
+  opening_name_ = options.inputs.empty() ? "the procedural planet"
+                                         : fs::path(options.inputs.front()).filename().string();
+  if (!panel_.message_is_error) say("opening " + opening_name_, false);
   opening_ = std::async(std::launch::async, [this, options] {
     return open_scene(host_, options.inputs.empty() ? parse_scene(kPlanet, "the planet", ".")
                                                     : scene_from(options, pictures_));
@@ -149,12 +177,13 @@ void Viewer::take_opened() {
   try {
     OpenedScene opened = opening_.get();
     const RenderSettings& settings = opened.scene.render;
-    if (!tried_one_ && !options_.render.inputs.empty() && !options_.render.size) {
-      size_ = {settings.width, settings.height};
+    const glm::ivec2 size(settings.width, settings.height);
+    if (!tried_one_ && !options_.render.inputs.empty() && !options_.render.size && size != size_) {
+      size_ = size;
       window_->set_size(size_.x, size_.y);
     }
     tried_one_ = scene_given_ = true;
-    session_->open(std::move(opened));
+    session_->open(std::move(opened), opening_name_);
     if (!panel_.message_is_error) panel_.message.clear();
   } catch (const Error& error) {
     refuse(error);
@@ -186,7 +215,7 @@ fs::path Viewer::free_name() const {
 
 // By the offline renderer, with its error line and the scene in it.
 void Viewer::save(const fs::path& output) {
-  session_->ask([this, output, size = size_](const ViewSession& session) {
+  session_->ask([this, output, size = size_](ViewSession& session) {
     const PictureFormat format = picture_format(output);
     pictures_.check_format(output);
     const OpenedScene seen = session.as_seen(size.x, size.y);
@@ -200,31 +229,47 @@ void Viewer::save(const fs::path& output) {
   });
 }
 
+double Viewer::wait_s() const {
+  const bool still = session_->at_rest() && !opening_.valid() && most_frames_ == 0;
+  return still ? kRest_s : kBusy_s;
+}
+
 bool Viewer::frame() {
+  // What moves the mouse is no reason to draw more often.
+  std::this_thread::sleep_until(last_ + std::chrono::duration<double>(kNext_s));
+  const WindowInput input = window_->poll(fresh_ ? 0 : wait_s());
   const auto now = Clock::now();
   const double gap_s = std::chrono::duration<double>(now - last_).count();
   const double cpu_s = thread_cpu_s();
   if (most_frames_ > 0) gaps_.push_back({1e3 * gap_s, 1e3 * (cpu_s - last_cpu_s_), {}});
   last_ = now;
   last_cpu_s_ = cpu_s;
-  const WindowInput input = window_->poll();
-  if (input.close) return false;
+  across_ = {input.width, input.height};
   session_->check();
   if (!input.dropped.empty()) drop(input.dropped);
   take_opened();
   take_news();
   session_->apply(panel_);
   session_->act(input, gap_s);
-  const bool fresh = session_->fill(panel_);
+  if (input.close) return false;
+  fresh_ = session_->fill(panel_);
   if (!session_->has_session()) {
     panel_.busy = true;
     panel_.scene = "opening";
   }
-  if (input.screenshot) save(free_name());
+  if (input.screenshot) {
+    say("drawing the picture at full quality", false);
+    save(free_name());
+  }
+  if (input.hide) hidden_ = !hidden_;
+  panel_.hidden = hidden_;
+  if (const auto error = session_->error(); error && most_frames_ == 0 && told_ != *error) {
+    told_ = *error;
+    log(LogLevel::kInfo, "at rest: " + told_);
+  }
   const ByteImage& picture = session_->picture();
   window_->show(picture.values.empty() ? nullptr : picture.values.data(), picture.width,
                 picture.height, panel_);
-  std::this_thread::sleep_until(now + (fresh ? kNextFrame : kIdleFrame));
   return !session_->done();
 }
 
@@ -233,9 +278,10 @@ void Viewer::run() {
   last_cpu_s_ = thread_cpu_s();
   while (frame()) {
   }
+  session_->wait_until_handled();
   if (options_.screenshot && session_->has_session()) {
     save(*options_.screenshot);
-    session_->wait_for_tasks();
+    session_->wait_until_handled();
     for (const SessionThread::News& news : session_->take_news())
       if (news.error)
         throw Error(*news.error);
@@ -243,6 +289,22 @@ void Viewer::run() {
         say(news.text, false);
   }
   report();
+}
+
+// Of a run of so many frames that ended at rest.
+std::string Viewer::await_error() {
+  std::string text;
+  session_->ask([&text, size = across_](ViewSession& session) {
+    while (session.awaits_error()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      session.advance(size.x, size.y);
+    }
+    text = session.error_text();
+    return std::string();
+  });
+  session_->wait_until_handled();
+  session_->check();
+  return text;
 }
 
 void Viewer::report() {
@@ -258,6 +320,7 @@ void Viewer::report() {
               status.leaves, double(status.bytes) / 1048576, double(status.budget_bytes) / 1048576,
               status.bricks_read, status.bricks_uploaded, status.tiles_lit,
               session_->at_rest() ? "at rest" : "not at rest");
+  std::printf("%s\n", await_error().c_str());
   std::printf("peak memory %.0f MiB\n", usage_now().peak_mib);
   if (!panel_.message.empty()) std::printf("%s\n", panel_.message.c_str());
 }

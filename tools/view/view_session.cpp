@@ -6,13 +6,14 @@
 #include <cstdio>
 #include <glm/gtc/constants.hpp>
 
+#include "cli/report.h"
 #include "cli/saved_picture.h"
 #include "common/planet_scene.h"
 #include "common/planet_view.h"
+#include "geo/place.h"
 #include "image/tone.h"
 #include "scene/scene_file.h"
 #include "scene/utc.h"
-#include "sun/sun_position.h"
 
 namespace nepho {
 namespace {
@@ -48,6 +49,10 @@ std::string line(const char* format, Numbers... numbers) {
   return text;
 }
 
+std::string length_text(double length_m) {
+  return length_m < 1e4 ? line("%.0f m", length_m) : line("%.4g km", 1e-3 * length_m);
+}
+
 }  // namespace
 
 ViewSession::ViewSession(OpenedScene opened, int coarse)
@@ -56,6 +61,7 @@ ViewSession::ViewSession(OpenedScene opened, int coarse)
       timed_(volume_with_times(opened_)),
       flight_(opened_.request.camera, ground_of(opened_),
               glm::length(opened_.request.camera.target_m - opened_.request.camera.eye_m)),
+      sun_(opened_),
       fixed_coarse_(coarse > 0),
       coarse_(coarse > 0 ? coarse : kStartCoarse),
       exposure_ev_(opened_.scene.exposure_ev),
@@ -88,27 +94,34 @@ LocalAxes ViewSession::axes() const {
 
 void ViewSession::apply(const Panel& panel) {
   if (!panel.changed) return;
+  RenderSettings& settings = opened_.request.settings;
+  if (panel.budget_mib != settings.budget_mib) set_budget(panel.budget_mib);
+  if (panel.go && panel.go_to)
+    flight_.go_to(panel.go_to->latitude_deg, panel.go_to->longitude_deg, panel.go_to->height_m);
+  sun_.apply(panel, axes());
   if (panel.mode != int(flight_.mode())) flight_.set_mode(FlightMode(panel.mode));
   if (!exposure_ev_ || panel.exposure_ev != *exposure_ev_) {
     exposure_ev_ = panel.exposure_ev;
     exposure_found_ = false;
     show_again_ = true;
   }
-  RenderSettings& settings = opened_.request.settings;
   settings.tolerance = panel.tolerance;
   settings.step_voxels.reset();
   if (panel.fixed_step) settings.step_voxels = panel.step_voxels;
   settings.pixels_per_voxel = panel.pixels_per_voxel;
-  const LocalAxes at = axes();
-  const glm::dvec2 angles = sun_angles_deg(at, opened_.request.sun.to_sun);
-  if (std::abs(angles.x - panel.sun_azimuth_deg) > 1e-6 ||
-      std::abs(angles.y - panel.sun_elevation_deg) > 1e-6) {
-    const double a = glm::radians(panel.sun_azimuth_deg), e = glm::radians(panel.sun_elevation_deg);
-    opened_.request.sun.to_sun =
-        std::cos(e) * (std::sin(a) * at.east + std::cos(a) * at.north) + std::sin(e) * at.up;
-  }
   for (std::size_t v = 0; v < shown_.size(); ++v) shown_[v] = panel.volumes[v].shown;
   if (panel.time != time_) set_time(panel.time);
+  opened_.request.sun = sun_.sun();
+}
+
+// What was read is read again: the memory for it is another. The old stays where the new is too
+// small.
+void ViewSession::set_budget(double budget_mib) {
+  RenderRequest request = wanted(frame_.width, frame_.height);
+  request.settings.budget_mib = budget_mib;
+  auto live = std::make_unique<LiveRenderer>(request);
+  live_ = std::move(live);
+  opened_.request.settings.budget_mib = budget_mib;
 }
 
 // All volumes go to the time that is nearest; the sun goes along where times are dates.
@@ -124,15 +137,13 @@ void ViewSession::set_time(int index) {
     opened_.request.volumes[v].time_s = *std::ranges::min_element(
         info.times_s, {}, [&](double t) { return std::abs(t - wanted_s); });
   }
-  if (dated && opened_.scene.planet)
-    opened_.request.sun.to_sun = sun_position(utc_of(clock, time_s)).to_sun;
+  if (dated) sun_.follow(utc_of(clock, time_s));
 }
 
 // Of a window of this size, in sides that any coarseness divides.
 RenderRequest ViewSession::wanted(int width, int height) const {
   RenderRequest request = opened_.request;
   request.camera = flight_.camera();
-  request.settings.probe_pixels = 0;
   request.settings.width = std::max(width / kCoarsest, 1) * kCoarsest;
   request.settings.height = std::max(height / kCoarsest, 1) * kCoarsest;
   std::vector<RenderVolume> volumes;
@@ -161,6 +172,7 @@ bool ViewSession::advance(int width, int height) {
   } else {
     status_ = live_->status();
   }
+  update_error();
   if ((!fresh && !show_again_) || frame_.rgb.empty()) return false;
   const FloatImage linear = linear_image(frame_);
   // Until the first whole tree is there; then exposure stays, whatever comes into sight.
@@ -172,6 +184,29 @@ bool ViewSession::advance(int width, int height) {
                         display_white(opened_.scene));
   show_again_ = false;
   return true;
+}
+
+void ViewSession::update_error() {
+  error_failure_.clear();
+  error_.reset();
+  try {
+    error_ = live_->error(frame_);
+  } catch (const Error& error) {
+    error_failure_ = error.what();
+  }
+}
+
+bool ViewSession::awaits_error() const {
+  return at_rest() && !error_ && error_failure_.empty() && !status_.failure &&
+         opened_.request.settings.probe_pixels > 0 && frame_.width > 0;
+}
+
+std::string ViewSession::error_text() const {
+  if (error_) return error_line(*error_);
+  if (!error_failure_.empty()) return "error: not known: " + error_failure_;
+  if (opened_.request.settings.probe_pixels <= 0) return "error: not measured (0 probe pixels)";
+  if (awaits_error()) return "error: being measured";
+  return at_rest() ? "error: not known" : "error: not known before it is at rest";
 }
 
 // Cost goes with the pixels: coarser at once, finer a step at a time.
@@ -200,13 +235,17 @@ void ViewSession::fill(Panel& panel) const {
   panel.fixed_step = settings.step_voxels.has_value();
   panel.step_voxels = settings.step_voxels.value_or(2);
   panel.pixels_per_voxel = settings.pixels_per_voxel;
-  const glm::dvec2 sun = sun_angles_deg(axes(), opened_.request.sun.to_sun);
-  panel.sun_azimuth_deg = sun.x;
-  panel.sun_elevation_deg = sun.y;
+  panel.budget_mib = settings.budget_mib;
+  panel.error_line = error_text();
+  sun_.fill(panel, axes());
+  if (const auto body = body_of(opened_)) {
+    const GeodeticPoint at = geodetic_point(*body, flight_.camera().eye_m);
+    panel.place = {at.latitude_deg, at.longitude_deg, flight_.height_m()};
+  }
+  panel.go = false;
   panel.volumes.clear();
   for (std::size_t v = 0; v < shown_.size(); ++v)
-    panel.volumes.push_back(
-        {opened_.sources[v]->info().name + "##" + std::to_string(v), shown_[v]});
+    panel.volumes.push_back({opened_.sources[v]->info().name, shown_[v]});
   panel.time = time_;
   panel.times = 1;
   if (!opened_.sources.empty()) {
@@ -218,7 +257,8 @@ void ViewSession::fill(Panel& panel) const {
   }
   panel.busy = !at_rest();
   constexpr double kMib = 1024.0 * 1024.0;
-  panel.lines = {line("height %.0f m, speed %.3g m/s", flight_.height_m(), flight_.speed_m_per_s()),
+  panel.lines = {(panel.planet ? "height " : "distance ") + length_text(flight_.height_m()) +
+                     ", speed " + length_text(flight_.speed_m_per_s()) + "/s",
                  line("frame %dx%d, %.1f ms", frame_.width, frame_.height, frame_ms_)};
   for (const PassReport& pass : status_.passes)
     panel.lines.push_back(line("  %s %.1f ms", pass.name.c_str(), 1e3 * pass.cpu_s));
@@ -243,6 +283,7 @@ OpenedScene ViewSession::as_seen(int width, int height) const {
   scene.target = {};
   scene.camera = {camera.eye_m, camera.target_m, camera.up, camera.vertical_fov_rad, {}, {}};
   scene.sun.to_sun = seen.request.sun.to_sun;
+  scene.sun.irradiance_W_per_m2_nm = seen.request.sun.irradiance_W_per_m2_nm;
   scene.exposure_ev = exposure_ev_.value_or(0);
   for (std::size_t v = 0; v < scene.volumes.size(); ++v) {
     scene.volumes[v].time_s = seen.request.volumes[v].time_s;

@@ -8,6 +8,7 @@
 #include "image/image.h"
 #include "live/live_renderer.h"
 #include "view/flight.h"
+#include "view/view_sun.h"
 #include "view/window_module.h"
 
 namespace nepho {
@@ -20,7 +21,8 @@ class ViewSession {
   // 8; 0: as the device can bear.
   ViewSession(OpenedScene opened, int coarse);
 
-  // What the user did, and what he changed in the panel that fill() was called for.
+  // What the user did, and what he changed in the panel that fill() was called for; throws Error
+  // where that cannot be, and nothing else of it counts then.
   void act(const WindowInput& input, double seconds);
   void apply(const Panel& panel);
   void set_camera(const Camera& camera);  // replayed
@@ -32,6 +34,11 @@ class ViewSession {
   const LiveStatus& status() const { return status_; }
   bool at_rest() const { return live_->at_rest() && live_->whole(); }
   bool streaming() const { return live_->streaming(); }
+  // Of the picture: none while it moves, and for a while after.
+  const std::optional<ErrorEstimate>& error() const { return error_; }
+  // The line that `render` prints, or why there is none.
+  std::string error_text() const;
+  bool awaits_error() const;
   void fill(Panel& panel) const;
   // The scene as it is seen now, to be drawn in this size. Its sources stay here.
   OpenedScene as_seen(int width, int height) const;
@@ -40,6 +47,8 @@ class ViewSession {
   RenderRequest wanted(int width, int height) const;
   LocalAxes axes() const;
   void set_time(int index);
+  void set_budget(double budget_mib);
+  void update_error();
   void choose_coarseness(double frame_ms);
 
   OpenedScene opened_;
@@ -47,6 +56,7 @@ class ViewSession {
   int time_ = 0;
   std::size_t timed_ = 0;  // the volume whose times the slider has
   Flight flight_;
+  ViewSun sun_;
   bool fixed_coarse_;
   int coarse_, each_ = 1;     // of the next picture; of the one that is being made
   int slow_ = 0, quick_ = 0;  // frames in a row
@@ -54,6 +64,8 @@ class ViewSession {
   bool exposure_found_ = false;  // and may be found again in a finer tree
   std::unique_ptr<LiveRenderer> live_;
   LiveStatus status_;
+  std::optional<ErrorEstimate> error_;
+  std::string error_failure_;
   ByteImage picture_;
   double frame_ms_ = 0;
   bool show_again_ = false;  // the picture that is there, otherwise exposed

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,7 @@ struct WindowInput {
   double faster = 1;                      // a factor, while shift or control is held
   double turn_x = 0, turn_y = 0;          // pixels that the mouse was dragged, y downwards
   double scroll = 0;                      // notches
-  bool screenshot = false, next_mode = false, reset = false;
+  bool screenshot = false, next_mode = false, reset = false, hide = false;
   std::vector<std::string> dropped;
 };
 
@@ -29,10 +31,26 @@ struct Panel {
   std::string scene, message;
   bool message_is_error = false;
   std::vector<std::string> lines;  // passes, bricks, bytes
+  std::string error_line;          // of the picture, or why there is none
+  bool hidden = false;             // all but the message
   int mode = 0;                    // of flight: free, orbit, first person
   double exposure_ev = 0, tolerance = 0.01, step_voxels = 0, pixels_per_voxel = 1;
   bool fixed_step = false;
+  double budget_mib = 0, dragged_budget_mib = 0;  // in force; while the slider is held
+  // The sun as at a date, where there is a planet, or free: angles under the camera.
+  bool planet = false, sun_dated = false;
+  std::array<char, 32> sun_utc{};  // as utc_text() writes it; what was typed counts with
+  bool sun_utc_typed = false;      // this
+  bool sun_utc_edited = false;     // not to be overwritten
+  double sun_hour = 0;             // of that day
   double sun_azimuth_deg = 0, sun_elevation_deg = 0;
+  // Where the camera is, and where it is to go: over a planet.
+  struct Place {
+    double latitude_deg = 0, longitude_deg = 0, height_m = 0;
+  };
+  Place place;
+  std::optional<Place> go_to;  // as typed so far
+  bool go = false;
   struct Volume {
     std::string name;
     bool shown = true;
@@ -47,7 +65,8 @@ struct Panel {
 class Window {
  public:
   virtual ~Window() = default;
-  virtual WindowInput poll() = 0;
+  // `wait_s`: for something to happen, at most.
+  virtual WindowInput poll(double wait_s) = 0;
   // Draws a picture of 8-bit RGB over the whole window (none: black), the panel over it, and shows
   // both.
   virtual void show(const std::uint8_t* rgb, int width, int height, Panel& panel) = 0;

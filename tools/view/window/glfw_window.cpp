@@ -25,6 +25,8 @@ class GlfwWindow final : public Window {
   GlfwWindow(GLFWwindow* window, GLFWwindow* second) : window_(window), second_(second) {
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
+    // A key that was let go before a slow frame's end still counts in it.
+    glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
     glfwSetWindowUserPointer(window_, this);
     glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
       auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(w));
@@ -33,9 +35,11 @@ class GlfwWindow final : public Window {
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
       auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(w));
       if (action != GLFW_PRESS) return;
+      if (ImGui::GetIO().WantTextInput) return;  // it is typed into the panel
       if (key == GLFW_KEY_F12) self->input_.screenshot = true;
       if (key == GLFW_KEY_M) self->input_.next_mode = true;
       if (key == GLFW_KEY_R) self->input_.reset = true;
+      if (key == GLFW_KEY_H) self->input_.hide = true;
       if (key == GLFW_KEY_ESCAPE) self->input_.close = true;
     });
     IMGUI_CHECKVERSION();
@@ -60,8 +64,11 @@ class GlfwWindow final : public Window {
     glfwTerminate();
   }
 
-  WindowInput poll() override {
-    glfwPollEvents();
+  WindowInput poll(double wait_s) override {
+    if (wait_s > 0)
+      glfwWaitEventsTimeout(wait_s);
+    else
+      glfwPollEvents();
     input_.close = input_.close || glfwWindowShouldClose(window_);
     glfwGetFramebufferSize(window_, &input_.width, &input_.height);
     const ImGuiIO& io = ImGui::GetIO();
@@ -109,6 +116,9 @@ class GlfwWindow final : public Window {
     }
     draw_panel(panel);
     ImGui::Render();
+    // Dear ImGui puts back the program that it finds, and that of a scene before this one, which is
+    // in use though deleted, would then be gone.
+    glUseProgram(0);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(window_);
   }
