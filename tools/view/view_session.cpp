@@ -11,7 +11,9 @@
 #include "common/planet_scene.h"
 #include "common/planet_view.h"
 #include "geo/place.h"
+#include "gl/frame_data.h"
 #include "image/tone.h"
+#include "live/live_budget.h"
 #include "scene/scene_file.h"
 #include "scene/utc.h"
 
@@ -114,13 +116,14 @@ void ViewSession::apply(const Panel& panel) {
   opened_.request.sun = sun_.sun();
 }
 
-// What was read is read again: the memory for it is another. The old stays where the new is too
-// small.
+// What was read is read again: the memory for it is another, and never both. The old stays where
+// the new is too small.
 void ViewSession::set_budget(double budget_mib) {
   RenderRequest request = wanted(frame_.width, frame_.height);
   request.settings.budget_mib = budget_mib;
-  auto live = std::make_unique<LiveRenderer>(request);
-  live_ = std::move(live);
+  share_budget(budget_mib, gl::sky_lights(request), gl::tells_ice(request));
+  live_.reset();
+  live_ = std::make_unique<LiveRenderer>(request);
   opened_.request.settings.budget_mib = budget_mib;
 }
 
