@@ -123,7 +123,12 @@ void ViewSession::set_budget(double budget_mib) {
   request.settings.budget_mib = budget_mib;
   share_budget(budget_mib, gl::sky_lights(request), gl::tells_ice(request));
   live_.reset();
-  live_ = std::make_unique<LiveRenderer>(request);
+  try {
+    live_ = std::make_unique<LiveRenderer>(request);
+  } catch (const Error&) {  // more than OpenGL gives
+    live_ = std::make_unique<LiveRenderer>(wanted(frame_.width, frame_.height));
+    throw;
+  }
   opened_.request.settings.budget_mib = budget_mib;
 }
 
@@ -264,7 +269,9 @@ void ViewSession::fill(Panel& panel) const {
                      ", speed " + length_text(flight_.speed_m_per_s()) + "/s",
                  line("frame %dx%d, %.1f ms", frame_.width, frame_.height, frame_ms_)};
   for (const PassReport& pass : status_.passes)
-    panel.lines.push_back(line("  %s %.1f ms", pass.name.c_str(), 1e3 * pass.cpu_s));
+    panel.lines.push_back(pass.gpu_s >= 0
+                              ? line("  %s %.1f ms GPU", pass.name.c_str(), 1e3 * pass.gpu_s)
+                              : line("  %s %.1f ms CPU", pass.name.c_str(), 1e3 * pass.cpu_s));
   panel.lines.push_back(
       line("%lu leaves of %lu nodes%s", status_.leaves, status_.nodes,
            status_.complete && status_.budget_bound ? ", the budget is full" : ""));

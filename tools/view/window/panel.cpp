@@ -154,8 +154,8 @@ void draw_panel(Panel& panel) {
   if (panel.planet && ImGui::CollapsingHeader("places")) changed |= draw_places(panel);
   if (ImGui::CollapsingHeader("frames", ImGuiTreeNodeFlags_DefaultOpen)) {
     ImGui::TextUnformatted(panel.busy ? "bricks, light or pixels are still to come" : "at rest");
-    for (const std::string& line : panel.lines) ImGui::TextUnformatted(line.c_str());
     ImGui::TextUnformatted(panel.error_line.c_str());
+    for (const std::string& line : panel.lines) ImGui::TextUnformatted(line.c_str());
   }
   if (ImGui::CollapsingHeader("keys and mouse")) ImGui::TextUnformatted(kKeys);
   panel.changed = changed;
