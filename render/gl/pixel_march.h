@@ -31,7 +31,8 @@ std::vector<std::uint32_t> all_pixels(int width, int height);
 // with kDepthSwitch.
 inline constexpr const char* kDepthSwitch = "#define NEPHO_SEEN_DEPTH 1\n";
 PixelValues march_pixels(const Program& program, std::span<const std::uint32_t> list, int width,
-                         const PixelValues& values, const FrontAir* front = nullptr, bool depths = false);
+                         const PixelValues& values, const FrontAir* front = nullptr,
+                         bool depths = false);
 
 // view.comp for that air alone.
 void march_front(const Program& program, FrontAir& front);

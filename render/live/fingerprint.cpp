@@ -79,8 +79,8 @@ std::vector<double> fingerprint(const RenderRequest& request) {
   add_settings(numbers, request);
   const Camera& camera = request.camera;
   for (const glm::dvec3& v : {camera.eye_m, camera.target_m, camera.up}) numbers.add(v);
-  for (const double number : {camera.vertical_fov_rad, double(request.settings.width),
-                              double(request.settings.height)})
+  for (const double number :
+       {camera.vertical_fov_rad, double(request.settings.width), double(request.settings.height)})
     numbers.add(number);
   return numbers.take();
 }

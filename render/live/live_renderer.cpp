@@ -104,8 +104,8 @@ class LiveRenderer::Impl {
   PixelShares shares_;
   bool reuse_ = true;
   PixelReuse pixels_;
-  std::vector<double> look_;          // of what they show
-  std::vector<float> distances_m_;    // of the last share
+  std::vector<double> look_;        // of what they show
+  std::vector<float> distances_m_;  // of the last share
 };
 
 void LiveRenderer::Impl::set(const RenderRequest& request) {
@@ -277,9 +277,8 @@ HdrImage LiveRenderer::Impl::frame(int each) {
   if (look != look_) pixels_.clear();
   look_ = std::move(look);
   HdrImage picture;
-  gl::timed(counts_.passes, "reuse", [&] {
-    picture = pixels_.picture(whole_view(), shares_, distances_m_, !changed);
-  });
+  gl::timed(counts_.passes, "reuse",
+            [&] { picture = pixels_.picture(whole_view(), shares_, distances_m_, !changed); });
   return picture;
 }
 

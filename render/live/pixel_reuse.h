@@ -11,19 +11,19 @@
 
 namespace nepho {
 
-// How far from the eye what each pixel shows is, m: the cloud where it hides enough, else the ground;
-// kNoGround_m where there is neither. `values.met` has the ground of a planet.
+// How far from the eye what each pixel shows is, m: the cloud where it hides enough, else the
+// ground; kNoGround_m where there is neither. `values.met` has the ground of a planet.
 std::vector<float> seen_distances(const gl::PixelValues& values, bool planet);
 
-// Whole pictures from a share of their pixels and what was marched for the last ones (a render cache:
-// Walter, Drettakis, Parker 1999). Each pixel holds one marched point, with its place in the world:
-// relative to the eye, so that floats resolve it at any scale; the eye itself moves in double. In
-// the next picture a point is where its place is seen, and the nearest one of a pixel stays. Points
-// older than the pixels take to be marched anew are dropped, and so are those whose distance is not
-// that of the newly marched pixels around; what is left is clamped to the range of their radiance.
-// Pixels are a mean of the points around them, no farther than a pixel, and of the new pixels by
-// bilinear interpolation where there are none. Points of this view are as they were marched. The
-// approximation is named `pixel reuse`.
+// Whole pictures from a share of their pixels and what was marched for the last ones (a render
+// cache: Walter, Drettakis, Parker 1999). Each pixel holds one marched point, with its place in the
+// world: relative to the eye, so that floats resolve it at any scale; the eye itself moves in
+// double. In the next picture a point is where its place is seen, and the nearest one of a pixel
+// stays. Points older than the pixels take to be marched anew are dropped, and so are those whose
+// distance is not that of the newly marched pixels around; what is left is clamped to the range of
+// their radiance. Pixels are a mean of the points around them, no farther than a pixel, and of the
+// new pixels by bilinear interpolation where there are none. Points of this view are as they were
+// marched. The approximation is named `pixel reuse`.
 //
 // No OpenGL here: pixels are read back for the picture in any case.
 class PixelReuse {
@@ -36,8 +36,9 @@ class PixelReuse {
 
  private:
   struct Point {
-    glm::vec3 place_m{0.0f};  // relative to the eye; a unit direction where distance_m is kNoGround_m
-    float distance_m = -1;    // less than 0: no point
+    glm::vec3 place_m{
+        0.0f};              // relative to the eye; a unit direction where distance_m is kNoGround_m
+    float distance_m = -1;  // less than 0: no point
     glm::vec3 radiance{0.0f};
     float optical_depth = 0;
     glm::vec2 at{0.0f};  // from its pixel's centre, in pixels
@@ -45,15 +46,26 @@ class PixelReuse {
   };
   // Of the newly marched pixels around a cell of their grid.
   struct Range {
-    glm::vec3 low, high;    // radiance
+    glm::vec3 low, high;      // radiance
     float farthest, nearest;  // 1 / distance
   };
   struct View;
+  // Sums of radiance and optical depth by weight: of points of this view, and of earlier ones.
+  struct Around {
+    glm::vec4 mine{0.0f}, old{0.0f};
+    float my_weight = 0, old_weight = 0;
+  };
 
   void carry(const View& from, const View& to, std::uint32_t most_age);
   void take(const View& view, const PixelShares& shares, const std::vector<float>& distance_m);
+  void follow(const PixelShares& shares);
   void find_ranges(const PixelShares& shares);
   void reject(const PixelShares& shares);
+  std::size_t at(int x, int y) const {
+    return std::size_t(y) * std::size_t(width_) + std::size_t(x);
+  }
+  bool expected(int x, int y, int reach, float near) const;
+  Around points_around(int x, int y) const;
   HdrImage fill(const PixelShares& shares) const;
   const Range& range_at(const PixelGrid& grid, int x, int y) const;
 
@@ -62,6 +74,8 @@ class PixelReuse {
   FrameData last_{};
   std::vector<Point> points_, next_;  // by pixel
   std::vector<std::int32_t> targets_;
+  std::vector<glm::vec3> changes_;  // by pixel of the last share
+  std::vector<std::uint8_t> unexpected_;
   std::vector<Range> ranges_;
   int range_columns_ = 0;
 };
