@@ -30,8 +30,9 @@ float near_of(float distance_m) {
 }
 
 // 1 / distance within a range of such.
-bool within(float near, float farthest, float nearest) {
-  return near >= farthest * (1 - kSameDistance) && near <= nearest * (1 + kSameDistance);
+bool within(float near, float farthest, float nearest, float slack) {
+  return near >= farthest * (1 - kSameDistance) - slack &&
+         near <= nearest * (1 + kSameDistance) + slack;
 }
 
 // The pixels of a grid around a pixel, and where it is between them.
@@ -106,10 +107,12 @@ struct PixelReuse::View {
 void PixelReuse::clear() {
   width_ = height_ = 0;
   points_.clear();
+  eyes_m_.clear();
 }
 
 HdrImage PixelReuse::picture(const FrameData& view, const PixelShares& shares,
                              const std::vector<float>& distance_m, bool same_view) {
+  const std::uint32_t most_age = 2 * std::uint32_t(shares.each() * shares.each());
   ++frame_;
   if (!same_view) ++view_;
   if (width_ != view.width || height_ != view.height) {
@@ -117,9 +120,10 @@ HdrImage PixelReuse::picture(const FrameData& view, const PixelShares& shares,
     height_ = view.height;
     points_.assign(std::size_t(width_) * std::size_t(height_), {});
   } else if (!same_view) {
-    carry(View(last_), View(view), std::uint32_t(2 * shares.each() * shares.each()));
+    carry(View(last_), View(view), most_age);
   }
   last_ = view;
+  find_slack(View(view), most_age);
   take(View(view), shares, distance_m);
   follow(shares);
   find_ranges(shares);
@@ -162,12 +166,25 @@ void PixelReuse::carry(const View& from, const View& to, std::uint32_t most_age)
   points_.swap(next_);
 }
 
+// Nothing hides anything else, nor stops to, by less of a parallax than that of a pixel: from so
+// far apart as the eye was while there have been points.
+void PixelReuse::find_slack(const View& view, std::uint32_t most_age) {
+  eyes_m_.push_back(view.eye_m);
+  while (eyes_m_.size() > most_age + 1) eyes_m_.pop_front();
+  double travel_m = 0;
+  for (const glm::dvec3& eye_m : eyes_m_)
+    travel_m = std::max(travel_m, glm::distance(eye_m, view.eye_m));
+  const double pixel_rad = 2 * double(glm::length(view.up)) / view.height;
+  slack_per_m_ = float(std::min(pixel_rad / std::max(travel_m, 1e-30), 1e30));
+}
+
 // Whether a point no farther than `reach` pixels is as far away.
 bool PixelReuse::expected(int x, int y, int reach, float near) const {
   for (int j = std::max(y - reach, 0); j <= std::min(y + reach, height_ - 1); ++j)
     for (int i = std::max(x - reach, 0); i <= std::min(x + reach, width_ - 1); ++i) {
       const Point& point = points_[at(i, j)];
-      if (point.distance_m >= 0 && within(near_of(point.distance_m), near, near)) return true;
+      if (point.distance_m >= 0 && within(near_of(point.distance_m), near, near, slack_per_m_))
+        return true;
     }
   return false;
 }
@@ -252,6 +269,10 @@ void PixelReuse::find_ranges(const PixelShares& shares) {
           range.farthest = std::min(range.farthest, near);
           range.nearest = std::max(range.nearest, near);
         }
+      if (row == 0 || row == rows || column == 0 || column == columns) {
+        range.farthest = 0;
+        range.nearest = 1e30f;
+      }
       const glm::vec3 beyond = kBeyondRange * (range.high - range.low);
       range.low -= beyond;
       range.high += beyond;
@@ -281,11 +302,11 @@ void PixelReuse::reject([[maybe_unused]] const PixelShares& shares) {
       const Range& range = range_at(grid, x, y);
       const float near = near_of(point.distance_m);
       const int column = std::clamp((x - first[0] + each / 2 + each) / each - 1, 0, columns - 1);
-      bool stays = within(near, range.farthest, range.nearest);
+      bool stays = within(near, range.farthest, range.nearest, slack_per_m_);
       if (unexpected_[std::size_t(row) * std::size_t(columns) + std::size_t(column)]) {
         const Point& newest = points_[at(column * each + first[0], row * each + first[1])];
         const float there = near_of(newest.distance_m);
-        stays = stays && within(near, there, there);
+        stays = stays && within(near, there, there, slack_per_m_);
       }
       if (!stays) point.distance_m = -1;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -64,6 +65,7 @@ class PixelReuse {
   std::size_t at(int x, int y) const {
     return std::size_t(y) * std::size_t(width_) + std::size_t(x);
   }
+  void find_slack(const View& view, std::uint32_t most_age);
   bool expected(int x, int y, int reach, float near) const;
   Around points_around(int x, int y) const;
   HdrImage fill(const PixelShares& shares) const;
@@ -72,6 +74,8 @@ class PixelReuse {
   int width_ = 0, height_ = 0;
   std::uint32_t frame_ = 0, view_ = 0;
   FrameData last_{};
+  std::deque<glm::dvec3> eyes_m_;     // of the frames that points may be of
+  float slack_per_m_ = 0;             // of 1 / distance
   std::vector<Point> points_, next_;  // by pixel
   std::vector<std::int32_t> targets_;
   std::vector<glm::vec3> changes_;  // by pixel of the last share
