@@ -13,11 +13,12 @@ using gl::kNoGround_m;
 // What a cloud hides of what is behind it, for the pixel to go where the cloud goes: the sky has no
 // marks that would be missed.
 constexpr float kHidesSky = 0.02f, kHidesGround = 0.3f;
-constexpr float kReach_pixels = 1.25f;    // of a point
-constexpr float kBilinearWeight = 0.05f;  // beside a point's 1
-constexpr float kSameDistance = 0.1f;     // relative: where two points are one surface
-constexpr float kBeyondRange = 0.25f;     // of the range of radiance around
-constexpr int kRing = 1;                  // of grid pixels around a cell
+constexpr float kReach_pixels = 1.25f;   // of a point
+constexpr float kBilinearWeight = 0.1f;  // beside a point's 1, where there is none,
+constexpr float kEnough = 0.5f;          // to nothing with so much of them
+constexpr float kSameDistance = 0.1f;    // relative: where two points are one surface
+constexpr float kBeyondRange = 0.25f;    // of the range of radiance around
+constexpr int kRing = 1;                 // of grid pixels around a cell
 
 template <class Row>
 void each_row(int rows, const Row& row) {
@@ -35,30 +36,6 @@ bool within(float near, float farthest, float nearest, float slack) {
          near <= nearest * (1 + kSameDistance) + slack;
 }
 
-// The pixels of a grid around a pixel, and where it is between them.
-struct Corners {
-  Corners(int x, int y, const PixelGrid& grid, int columns, int rows) {
-    across = along(x, grid.x, grid.step, columns, column);
-    down = along(y, grid.y, grid.step, rows, row);
-  }
-  static float along(int pixel, int first, int step, int count, int (&between)[2]) {
-    const float at = std::clamp(float(pixel - first) / float(step), 0.0f, float(count - 1));
-    between[0] = int(at);
-    between[1] = std::min(between[0] + 1, count - 1);
-    return at - float(between[0]);
-  }
-  template <class Value>
-  Value mix(const Value& a, const Value& b, const Value& c, const Value& d) const {
-    return glm::mix(glm::mix(a, b, across), glm::mix(c, d, across), down);
-  }
-  int column[2], row[2];
-  float across, down;
-};
-
-int cell_of(int pixel, int first, int step) {
-  return (pixel - first + step) / step;  // 0: before the first
-}
-
 }  // namespace
 
 std::vector<float> seen_distances(const gl::PixelValues& values, bool planet) {
@@ -72,6 +49,26 @@ std::vector<float> seen_distances(const gl::PixelValues& values, bool planet) {
                                                              : start_m + ground_m;
   }
   return distances_m;
+}
+
+PixelReuse::Lines PixelReuse::lines(const PixelGrid& grid) const {
+  const auto along = [&](int first, int pixels) {
+    const int count = pixels / grid.step;
+    std::vector<Line> lines(static_cast<std::size_t>(pixels));
+    for (int pixel = 0; pixel < pixels; ++pixel) {
+      const float where =
+          std::clamp(float(pixel - first) / float(grid.step), 0.0f, float(count - 1));
+      Line& line = lines[std::size_t(pixel)];
+      line.before = int(where);
+      line.after = std::min(line.before + 1, count - 1);
+      line.part = where - float(line.before);
+      line.nearest = int(where + 0.5f);
+      line.cell = (pixel - first + grid.step) / grid.step;
+    }
+    return lines;
+  };
+  return {grid, width_ / grid.step, height_ / grid.step, along(grid.x, width_),
+          along(grid.y, height_)};
 }
 
 // As camera.glsl.
@@ -114,7 +111,7 @@ HdrImage PixelReuse::picture(const FrameData& view, const PixelShares& shares,
                              const std::vector<float>& distance_m, bool same_view) {
   const std::uint32_t most_age = 2 * std::uint32_t(shares.each() * shares.each());
   ++frame_;
-  if (!same_view) ++view_;
+  if (!same_view) view_begin_ = frame_;
   if (width_ != view.width || height_ != view.height) {
     width_ = view.width;
     height_ = view.height;
@@ -125,10 +122,12 @@ HdrImage PixelReuse::picture(const FrameData& view, const PixelShares& shares,
   last_ = view;
   find_slack(View(view), most_age);
   take(View(view), shares, distance_m);
-  follow(shares);
-  find_ranges(shares);
-  reject(shares);
-  return fill(shares);
+  if (shares.whole()) return shares.picture();
+  const auto [x, y] = shares.last_offset();
+  const Lines finest = lines(shares.finest_grid());
+  find_ranges(finest);
+  age(finest, lines({shares.each(), x, y}));
+  return fill(finest);
 }
 
 // Points to where they are seen now. Of several in a pixel the nearest stays, or the newest where
@@ -215,46 +214,17 @@ void PixelReuse::take(const View& view, const PixelShares& shares,
       point.optical_depth = marched.optical_depth[p];
       point.at = {0, 0};
       point.frame = frame_;
-      point.view = view_;
     }
   });
-}
-
-// What all four newly marched pixels around agree on has changed the points between them as well,
-// by the least of it: light and glints that go with the eye, the air in front. At edges they do not
-// agree.
-void PixelReuse::follow([[maybe_unused]] const PixelShares& shares) {
-#if !defined(NEPHO_MUTANT_REUSE_AS_WAS)
-  const int each = shares.each(), columns = width_ / each, rows = height_ / each;
-  const auto [first_x, first_y] = shares.last_offset();
-  each_row(height_, [&, first_x = first_x, first_y = first_y](int y) {
-    for (int x = 0; x < width_; ++x) {
-      Point& point = points_[at(x, y)];
-      if (point.distance_m < 0 || point.view == view_) continue;
-      const Corners corners(x, y, {each, first_x, first_y}, columns, rows);
-      glm::vec3 of[4];
-      for (int n = 0; n < 4; ++n)
-        of[n] = changes_[std::size_t(corners.row[n / 2]) * std::size_t(columns) +
-                         std::size_t(corners.column[n % 2])];
-      const glm::vec3 low = glm::min(glm::min(of[0], of[1]), glm::min(of[2], of[3]));
-      const glm::vec3 high = glm::max(glm::max(of[0], of[1]), glm::max(of[2], of[3]));
-      for (int c = 0; c < 3; ++c) {
-        const float change = low[c] > 0 ? low[c] : std::min(high[c], 0.0f);
-        point.radiance[c] = std::max(point.radiance[c] + change, 0.0f);
-      }
-    }
-  });
-#endif
 }
 
 // Of the pixels of the finest grid around each of its cells; those before the first and behind the
 // last of a row are cells too.
-void PixelReuse::find_ranges(const PixelShares& shares) {
-  const PixelGrid grid = shares.finest_grid();
-  const int columns = width_ / grid.step, rows = height_ / grid.step;
+void PixelReuse::find_ranges(const Lines& finest) {
+  const auto& [grid, columns, rows, across, down] = finest;
   range_columns_ = columns + 1;
   ranges_.resize(std::size_t(range_columns_) * std::size_t(rows + 1));
-  each_row(rows + 1, [&](int row) {
+  each_row(rows + 1, [&, grid = grid, columns = columns, rows = rows](int row) {
     for (int column = 0; column <= columns; ++column) {
       Range range{glm::vec3(1e30f), glm::vec3(-1e30f), 1e30f, 0};
       for (int j = row - 1 - kRing; j <= row + kRing; ++j)
@@ -281,91 +251,117 @@ void PixelReuse::find_ranges(const PixelShares& shares) {
   });
 }
 
-const PixelReuse::Range& PixelReuse::range_at(const PixelGrid& grid, int x, int y) const {
-  return ranges_[std::size_t(cell_of(y, grid.y, grid.step)) * std::size_t(range_columns_) +
-                 std::size_t(cell_of(x, grid.x, grid.step))];
+const PixelReuse::Range& PixelReuse::range_at(const Lines& finest, int x, int y) const {
+  return ranges_[std::size_t(finest.y[std::size_t(y)].cell) * std::size_t(range_columns_) +
+                 std::size_t(finest.x[std::size_t(x)].cell)];
 }
 
-// Points of earlier views at a distance that nothing around has now: what they showed is hidden, or
-// what hid it is gone. Where the nearest new pixel is at a distance that was not expected there,
-// they have to be as far away as that one: of an edge that comes all at once, nothing is known yet.
-void PixelReuse::reject([[maybe_unused]] const PixelShares& shares) {
-#if !defined(NEPHO_MUTANT_REUSE_ALL)
-  const PixelGrid grid = shares.finest_grid();
-  const int each = shares.each(), columns = width_ / each, rows = height_ / each;
-  const std::array<int, 2> first = shares.last_offset();
+// Points of earlier views at a distance that nothing around has now are dropped: what they showed
+// is hidden, or what hid it is gone. Where the nearest new pixel is at a distance that was not
+// expected there, they have to be as far away as that one: of an edge that comes all at once,
+// nothing is known yet.
+bool PixelReuse::stays(const Point& point, const Range& range, int x, int y,
+                       const Lines& newest) const {
+  const float near = near_of(point.distance_m);
+  if (!within(near, range.farthest, range.nearest, slack_per_m_)) return false;
+  const int column = newest.x[std::size_t(x)].nearest, row = newest.y[std::size_t(y)].nearest;
+  if (!unexpected_[newest.number(column, row)]) return true;
+  const float there = near_of(points_[at(newest.pixel_x(column), newest.pixel_y(row))].distance_m);
+  return within(near, there, there, slack_per_m_);
+}
+
+// What all four newly marched pixels around agree on has changed the points between them as well,
+// by the least of it: light and glints that go with the eye, the air in front. At edges they do not
+// agree.
+glm::vec3 PixelReuse::change_at(int x, int y, const Lines& newest) const {
+  const Line &across = newest.x[std::size_t(x)], &down = newest.y[std::size_t(y)];
+  glm::vec3 low(1e30f), high(-1e30f);
+  for (const int row : {down.before, down.after})
+    for (const int column : {across.before, across.after}) {
+      const glm::vec3& of = changes_[newest.number(column, row)];
+      low = glm::min(low, of);
+      high = glm::max(high, of);
+    }
+  return glm::max(low, glm::vec3(0.0f)) + glm::min(high, glm::vec3(0.0f));
+}
+
+void PixelReuse::age(const Lines& finest, const Lines& newest) {
   each_row(height_, [&](int y) {
-    const int row = std::clamp((y - first[1] + each / 2 + each) / each - 1, 0, rows - 1);
     for (int x = 0; x < width_; ++x) {
       Point& point = points_[at(x, y)];
-      if (point.distance_m < 0 || point.view == view_) continue;
-      const Range& range = range_at(grid, x, y);
-      const float near = near_of(point.distance_m);
-      const int column = std::clamp((x - first[0] + each / 2 + each) / each - 1, 0, columns - 1);
-      bool stays = within(near, range.farthest, range.nearest, slack_per_m_);
-      if (unexpected_[std::size_t(row) * std::size_t(columns) + std::size_t(column)]) {
-        const Point& newest = points_[at(column * each + first[0], row * each + first[1])];
-        const float there = near_of(newest.distance_m);
-        stays = stays && within(near, there, there, slack_per_m_);
+      if (point.distance_m < 0 || is_new(point)) continue;
+#if !defined(NEPHO_MUTANT_REUSE_ALL)
+      if (!stays(point, range_at(finest, x, y), x, y, newest)) {
+        point.distance_m = -1;
+        continue;
       }
-      if (!stays) point.distance_m = -1;
+#endif
+#if !defined(NEPHO_MUTANT_REUSE_AS_WAS)
+      point.radiance = glm::max(point.radiance + change_at(x, y, newest), glm::vec3(0.0f));
+#endif
     }
   });
-#endif
 }
 
 PixelReuse::Around PixelReuse::points_around(int x, int y) const {
+  constexpr float kPerReach = 1 / (kReach_pixels * kReach_pixels);
   Around around;
   for (int j = std::max(y - 1, 0); j <= std::min(y + 1, height_ - 1); ++j)
     for (int i = std::max(x - 1, 0); i <= std::min(x + 1, width_ - 1); ++i) {
       const Point& point = points_[at(i, j)];
-      if (point.distance_m < 0) continue;
-      const glm::vec2 apart = glm::vec2(i - x, j - y) + point.at;
-      const float far = glm::dot(apart, apart) / (kReach_pixels * kReach_pixels);
-      if (far >= 1) continue;
+      const float right = float(i - x) + point.at.x, down = float(j - y) + point.at.y;
+      const float far = (right * right + down * down) * kPerReach;
+      if (point.distance_m < 0 || far >= 1) continue;
       const float part = (1 - far) * (1 - far);
-      const glm::vec4 values(point.radiance, point.optical_depth);
-      (point.view == view_ ? around.mine : around.old) += part * values;
-      (point.view == view_ ? around.my_weight : around.old_weight) += part;
+      const glm::vec4 values = part * values_of(point);
+      if (is_new(point)) {
+        around.mine += values;
+        around.my_weight += part;
+      } else {
+        around.old += values;
+        around.old_weight += part;
+      }
     }
   return around;
 }
 
-HdrImage PixelReuse::fill(const PixelShares& shares) const {
-  const PixelGrid grid = shares.finest_grid();
-  const int columns = width_ / grid.step, rows = height_ / grid.step;
+// Radiance and optical depth of the new pixels around.
+glm::vec4 PixelReuse::bilinear(const Lines& finest, int x, int y) const {
+  const Line &across = finest.x[std::size_t(x)], &down = finest.y[std::size_t(y)];
+  const auto row = [&](int j) {
+    const auto of = [&](int i) {
+      return values_of(points_[at(finest.pixel_x(i), finest.pixel_y(j))]);
+    };
+    return glm::mix(of(across.before), of(across.after), across.part);
+  };
+  return glm::mix(row(down.before), row(down.after), down.part);
+}
+
+HdrImage PixelReuse::fill(const Lines& finest) const {
   HdrImage image{width_, height_, {}, {}};
   image.rgb.resize(3 * points_.size());
   image.optical_depth.resize(points_.size());
-  const auto point_at = [&](int x, int y) -> const Point& { return points_[at(x, y)]; };
-  // Radiance and optical depth.
-  const auto values_of = [](const Point& point) {
-    return glm::vec4(point.radiance, point.optical_depth);
-  };
-  const auto bilinear = [&](int x, int y) {
-    const Corners corners(x, y, grid, columns, rows);
-    const auto of = [&](int i, int j) {
-      return values_of(
-          point_at(corners.column[i] * grid.step + grid.x, corners.row[j] * grid.step + grid.y));
-    };
-    return corners.mix(of(0, 0), of(1, 0), of(0, 1), of(1, 1));
-  };
   each_row(height_, [&](int y) {
     for (int x = 0; x < width_; ++x) {
-      const Point& own = point_at(x, y);
+      const Point& own = points_[at(x, y)];
       glm::vec4 values = values_of(own);
-      if (own.distance_m < 0 || own.view != view_) {
+      if (own.distance_m < 0 || !is_new(own)) {
         const Around around = points_around(x, y);
-        glm::vec4 sum = around.mine + kBilinearWeight * bilinear(x, y);
-        float weight = around.my_weight + kBilinearWeight;
+        glm::vec4 sum = around.mine;
+        float weight = around.my_weight;
         if (around.old_weight > 0) {
           glm::vec4 old = around.old / around.old_weight;
 #if !defined(NEPHO_MUTANT_REUSE_UNCLAMPED)
-          const Range& range = range_at(grid, x, y);
+          const Range& range = range_at(finest, x, y);
           old = glm::vec4(glm::clamp(glm::vec3(old), range.low, range.high), old.w);
 #endif
           sum += around.old_weight * old;
           weight += around.old_weight;
+        }
+        if (weight < kEnough) {
+          const float rest = kBilinearWeight * (1 - weight / kEnough);
+          sum += rest * bilinear(finest, x, y);
+          weight += rest;
         }
         values = sum / weight;
       }

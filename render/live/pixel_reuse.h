@@ -37,18 +37,35 @@ class PixelReuse {
 
  private:
   struct Point {
-    glm::vec3 place_m{
-        0.0f};              // relative to the eye; a unit direction where distance_m is kNoGround_m
+    // Relative to the eye; a unit direction where distance_m is kNoGround_m.
+    glm::vec3 place_m{0.0f};
     float distance_m = -1;  // less than 0: no point
     glm::vec3 radiance{0.0f};
     float optical_depth = 0;
-    glm::vec2 at{0.0f};  // from its pixel's centre, in pixels
-    std::uint32_t frame = 0, view = 0;
+    glm::vec2 at{0.0f};       // from its pixel's centre, in pixels
+    std::uint32_t frame = 0;  // that it was marched in
   };
   // Of the newly marched pixels around a cell of their grid.
   struct Range {
     glm::vec3 low, high;      // radiance
     float farthest, nearest;  // 1 / distance
+  };
+  // Of a row or column of pixels: the lines of a grid before and behind it, the part of the way
+  // between them, the nearest one, and the number of the cell that it is in, 0 before the first
+  // line.
+  struct Line {
+    int before, after, nearest, cell;
+    float part;
+  };
+  struct Lines {
+    PixelGrid grid;
+    int columns, rows;
+    std::vector<Line> x, y;
+    int pixel_x(int column) const { return column * grid.step + grid.x; }
+    int pixel_y(int row) const { return row * grid.step + grid.y; }
+    std::size_t number(int column, int row) const {
+      return std::size_t(row) * std::size_t(columns) + std::size_t(column);
+    }
   };
   struct View;
   // Sums of radiance and optical depth by weight: of points of this view, and of earlier ones.
@@ -59,20 +76,25 @@ class PixelReuse {
 
   void carry(const View& from, const View& to, std::uint32_t most_age);
   void take(const View& view, const PixelShares& shares, const std::vector<float>& distance_m);
-  void follow(const PixelShares& shares);
-  void find_ranges(const PixelShares& shares);
-  void reject(const PixelShares& shares);
+  Lines lines(const PixelGrid& grid) const;
+  void find_ranges(const Lines& finest);
+  bool stays(const Point& point, const Range& range, int x, int y, const Lines& newest) const;
+  glm::vec3 change_at(int x, int y, const Lines& newest) const;
+  void age(const Lines& finest, const Lines& newest);
   std::size_t at(int x, int y) const {
     return std::size_t(y) * std::size_t(width_) + std::size_t(x);
   }
+  bool is_new(const Point& point) const { return point.frame >= view_begin_; }  // of this view
   void find_slack(const View& view, std::uint32_t most_age);
   bool expected(int x, int y, int reach, float near) const;
   Around points_around(int x, int y) const;
-  HdrImage fill(const PixelShares& shares) const;
-  const Range& range_at(const PixelGrid& grid, int x, int y) const;
+  static glm::vec4 values_of(const Point& point) { return {point.radiance, point.optical_depth}; }
+  glm::vec4 bilinear(const Lines& finest, int x, int y) const;
+  HdrImage fill(const Lines& finest) const;
+  const Range& range_at(const Lines& finest, int x, int y) const;
 
   int width_ = 0, height_ = 0;
-  std::uint32_t frame_ = 0, view_ = 0;
+  std::uint32_t frame_ = 0, view_begin_ = 0;
   FrameData last_{};
   std::deque<glm::dvec3> eyes_m_;     // of the frames that points may be of
   float slack_per_m_ = 0;             // of 1 / distance

@@ -127,6 +127,7 @@ void Viewer::take_opened() {
   try {
     OpenedScene opened = opening_.get();
     auto session = std::make_unique<ViewSession>(std::move(opened), coarse_);
+    session->reuse_pixels(!options_.no_reuse);
     session_ = std::move(session);
     Panel empty;  // what it says is of the scene before, but for why another one was not opened
     if (panel_.message_is_error) {

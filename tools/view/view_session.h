@@ -23,6 +23,7 @@ class ViewSession {
   // What the user did, and what he changed in the panel that fill() was called for.
   void act(const WindowInput& input, double seconds);
   void apply(const Panel& panel);
+  void reuse_pixels(bool reuse) { live_->reuse_pixels(reuse); }
   void set_camera(const Camera& camera);  // replayed
   // One step of streaming, and a new picture where there is one. True where it is new.
   bool advance(int width, int height);
