@@ -16,6 +16,7 @@
 #include "live/pixel_reuse.h"
 #include "live/pixel_shares.h"
 #include "live/resident_tree.h"
+#include "live/seen_distance.h"
 #include "live/tree_worker.h"
 
 extern const char* const nepho_shader_view;

@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gl/pixel_plan.h"
+
 namespace nepho {
 namespace {
 
 using gl::kNoGround_m;
 
-// What a cloud hides of what is behind it, for the pixel to go where the cloud goes: the sky has no
-// marks that would be missed.
-constexpr float kHidesSky = 0.02f, kHidesGround = 0.3f;
 constexpr float kReach_pixels = 1.25f;   // of a point
 constexpr float kBilinearWeight = 0.1f;  // beside a point's 1, where there is none,
 constexpr float kEnough = 0.5f;          // to nothing with so much of them
@@ -37,39 +36,6 @@ bool within(float near, float farthest, float nearest, float slack) {
 }
 
 }  // namespace
-
-std::vector<float> seen_distances(const gl::PixelValues& values, bool planet) {
-  std::vector<float> distances_m(values.depths.size());
-  for (std::size_t p = 0; p < distances_m.size(); ++p) {
-    const auto [moment_m, part, start_m, behind_m] = values.depths[p];
-    const float ground_m = planet ? values.met[p][3] : behind_m;
-    const bool sky = !(ground_m < kNoGround_m);
-    distances_m[p] = part > (sky ? kHidesSky : kHidesGround) ? start_m + moment_m / part
-                     : sky                                   ? kNoGround_m
-                                                             : start_m + ground_m;
-  }
-  return distances_m;
-}
-
-PixelReuse::Lines PixelReuse::lines(const PixelGrid& grid) const {
-  const auto along = [&](int first, int pixels) {
-    const int count = pixels / grid.step;
-    std::vector<Line> lines(static_cast<std::size_t>(pixels));
-    for (int pixel = 0; pixel < pixels; ++pixel) {
-      const float where =
-          std::clamp(float(pixel - first) / float(grid.step), 0.0f, float(count - 1));
-      Line& line = lines[std::size_t(pixel)];
-      line.before = int(where);
-      line.after = std::min(line.before + 1, count - 1);
-      line.part = where - float(line.before);
-      line.nearest = int(where + 0.5f);
-      line.cell = (pixel - first + grid.step) / grid.step;
-    }
-    return lines;
-  };
-  return {grid, width_ / grid.step, height_ / grid.step, along(grid.x, width_),
-          along(grid.y, height_)};
-}
 
 // As camera.glsl.
 struct PixelReuse::View {
@@ -124,9 +90,11 @@ HdrImage PixelReuse::picture(const FrameData& view, const PixelShares& shares,
   take(View(view), shares, distance_m);
   if (shares.whole()) return shares.picture();
   const auto [x, y] = shares.last_offset();
-  const Lines finest = lines(shares.finest_grid());
+  const GridLines finest(shares.finest_grid(), width_, height_);
   find_ranges(finest);
-  age(finest, lines({shares.each(), x, y}));
+  const GridLines newest({shares.each(), x, y}, width_, height_);
+  centre_changes(finest, newest);
+  age(finest, newest);
   return fill(finest);
 }
 
@@ -195,6 +163,7 @@ void PixelReuse::take(const View& view, const PixelShares& shares,
   const auto [first_x, first_y] = shares.last_offset();
   const int each = shares.each(), columns = width_ / each;
   changes_.resize(distance_m.size());
+  changes_at_.resize(distance_m.size());
   unexpected_.resize(distance_m.size());
   each_row(height_ / each, [&](int row) {
     for (int column = 0; column < columns; ++column) {
@@ -204,8 +173,12 @@ void PixelReuse::take(const View& view, const PixelShares& shares,
       const std::size_t n = std::size_t(row) * std::size_t(columns) + std::size_t(column);
       const Around around = points_around(x, y);
       changes_[n] = glm::vec3(0.0f);
-      for (int c = 0; c < 3 && around.old_weight > 0.5f; ++c)
-        changes_[n][c] = marched.rgb[3 * p + std::size_t(c)] - around.old[c] / around.old_weight;
+      changes_at_[n] = glm::vec2(0.0f);
+      if (around.old_weight > kEnough) {
+        for (int c = 0; c < 3; ++c)
+          changes_[n][c] = marched.rgb[3 * p + std::size_t(c)] - around.old[c] / around.old_weight;
+        changes_at_[n] = around.apart / around.old_weight;
+      }
       unexpected_[n] = !expected(x, y, each / 2, near_of(distance_m[n]));
       point.distance_m = distance_m[std::size_t(row) * std::size_t(columns) + std::size_t(column)];
       point.place_m = view.direction(x, y);
@@ -220,13 +193,13 @@ void PixelReuse::take(const View& view, const PixelShares& shares,
 
 // Of the pixels of the finest grid around each of its cells; those before the first and behind the
 // last of a row are cells too.
-void PixelReuse::find_ranges(const Lines& finest) {
+void PixelReuse::find_ranges(const GridLines& finest) {
   const auto& [grid, columns, rows, across, down] = finest;
   range_columns_ = columns + 1;
   ranges_.resize(std::size_t(range_columns_) * std::size_t(rows + 1));
   each_row(rows + 1, [&, grid = grid, columns = columns, rows = rows](int row) {
     for (int column = 0; column <= columns; ++column) {
-      Range range{glm::vec3(1e30f), glm::vec3(-1e30f), 1e30f, 0};
+      Range range{glm::vec3(1e30f), glm::vec3(-1e30f), 1e30f, 0, {}, {}};
       for (int j = row - 1 - kRing; j <= row + kRing; ++j)
         for (int i = column - 1 - kRing; i <= column + kRing; ++i) {
           const int x = std::clamp(i, 0, columns - 1) * grid.step + grid.x;
@@ -246,12 +219,48 @@ void PixelReuse::find_ranges(const Lines& finest) {
       const glm::vec3 beyond = kBeyondRange * (range.high - range.low);
       range.low -= beyond;
       range.high += beyond;
+#if !defined(NEPHO_MUTANT_REUSE_LEVEL)
+      find_rise(finest, column, row, range);
+#endif
       ranges_[std::size_t(row) * std::size_t(range_columns_) + std::size_t(column)] = range;
     }
   });
 }
 
-const PixelReuse::Range& PixelReuse::range_at(const Lines& finest, int x, int y) const {
+// Of gradients, not of edges: the least of what both sides of a cell and of those beside it have.
+void PixelReuse::find_rise(const GridLines& finest, int column, int row, Range& range) const {
+  const auto radiance = [&](int i, int j) -> const glm::vec3& {
+    return points_[at(finest.pixel_x(std::clamp(i, 0, finest.columns - 1)),
+                      finest.pixel_y(std::clamp(j, 0, finest.rows - 1)))]
+        .radiance;
+  };
+  const auto least = [&](const auto& rise, int cell, int count) {
+    const int first = -cell, last = count - 2 - cell;
+    if (first > last) return glm::vec3(0.0f);
+    glm::vec3 low(1e30f), high(-1e30f);
+    for (int side = -1; side <= 0; ++side)
+      for (int beside = -2; beside <= 0; ++beside) {
+        if (beside < first || beside > last) continue;  // the picture ends
+        const glm::vec3 here = rise(beside, side);
+        low = glm::min(low, here);
+        high = glm::max(high, here);
+      }
+    return (glm::max(low, glm::vec3(0.0f)) + glm::min(high, glm::vec3(0.0f))) /
+           float(finest.grid.step);
+  };
+  range.rise_x = least(
+      [&](int i, int j) {
+        return radiance(column + i + 1, row + j) - radiance(column + i, row + j);
+      },
+      column, finest.columns);
+  range.rise_y = least(
+      [&](int i, int j) {
+        return radiance(column + j, row + i + 1) - radiance(column + j, row + i);
+      },
+      row, finest.rows);
+}
+
+const PixelReuse::Range& PixelReuse::range_at(const GridLines& finest, int x, int y) const {
   return ranges_[std::size_t(finest.y[std::size_t(y)].cell) * std::size_t(range_columns_) +
                  std::size_t(finest.x[std::size_t(x)].cell)];
 }
@@ -261,7 +270,7 @@ const PixelReuse::Range& PixelReuse::range_at(const Lines& finest, int x, int y)
 // expected there, they have to be as far away as that one: of an edge that comes all at once,
 // nothing is known yet.
 bool PixelReuse::stays(const Point& point, const Range& range, int x, int y,
-                       const Lines& newest) const {
+                       const GridLines& newest) const {
   const float near = near_of(point.distance_m);
   if (!within(near, range.farthest, range.nearest, slack_per_m_)) return false;
   const int column = newest.x[std::size_t(x)].nearest, row = newest.y[std::size_t(y)].nearest;
@@ -273,8 +282,8 @@ bool PixelReuse::stays(const Point& point, const Range& range, int x, int y,
 // What all four newly marched pixels around agree on has changed the points between them as well,
 // by the least of it: light and glints that go with the eye, the air in front. At edges they do not
 // agree.
-glm::vec3 PixelReuse::change_at(int x, int y, const Lines& newest) const {
-  const Line &across = newest.x[std::size_t(x)], &down = newest.y[std::size_t(y)];
+glm::vec3 PixelReuse::change_at(int x, int y, const GridLines& newest) const {
+  const GridLines::Line &across = newest.x[std::size_t(x)], &down = newest.y[std::size_t(y)];
   glm::vec3 low(1e30f), high(-1e30f);
   for (const int row : {down.before, down.after})
     for (const int column : {across.before, across.after}) {
@@ -285,7 +294,18 @@ glm::vec3 PixelReuse::change_at(int x, int y, const Lines& newest) const {
   return glm::max(low, glm::vec3(0.0f)) + glm::min(high, glm::vec3(0.0f));
 }
 
-void PixelReuse::age(const Lines& finest, const Lines& newest) {
+// The old points around a new pixel lie beside it.
+void PixelReuse::centre_changes(const GridLines& finest, const GridLines& newest) {
+  each_row(newest.rows, [&](int row) {
+    for (int column = 0; column < newest.columns; ++column) {
+      const Range& range = range_at(finest, newest.pixel_x(column), newest.pixel_y(row));
+      const std::size_t n = newest.number(column, row);
+      changes_[n] += range.rise_x * changes_at_[n].x + range.rise_y * changes_at_[n].y;
+    }
+  });
+}
+
+void PixelReuse::age([[maybe_unused]] const GridLines& finest, const GridLines& newest) {
   each_row(height_, [&](int y) {
     for (int x = 0; x < width_; ++x) {
       Point& point = points_[at(x, y)];
@@ -313,6 +333,7 @@ PixelReuse::Around PixelReuse::points_around(int x, int y) const {
       const float far = (right * right + down * down) * kPerReach;
       if (point.distance_m < 0 || far >= 1) continue;
       const float part = (1 - far) * (1 - far);
+      around.apart += part * glm::vec2(right, down);
       const glm::vec4 values = part * values_of(point);
       if (is_new(point)) {
         around.mine += values;
@@ -326,8 +347,8 @@ PixelReuse::Around PixelReuse::points_around(int x, int y) const {
 }
 
 // Radiance and optical depth of the new pixels around.
-glm::vec4 PixelReuse::bilinear(const Lines& finest, int x, int y) const {
-  const Line &across = finest.x[std::size_t(x)], &down = finest.y[std::size_t(y)];
+glm::vec4 PixelReuse::bilinear(const GridLines& finest, int x, int y) const {
+  const GridLines::Line &across = finest.x[std::size_t(x)], &down = finest.y[std::size_t(y)];
   const auto row = [&](int j) {
     const auto of = [&](int i) {
       return values_of(points_[at(finest.pixel_x(i), finest.pixel_y(j))]);
@@ -337,7 +358,7 @@ glm::vec4 PixelReuse::bilinear(const Lines& finest, int x, int y) const {
   return glm::mix(row(down.before), row(down.after), down.part);
 }
 
-HdrImage PixelReuse::fill(const Lines& finest) const {
+HdrImage PixelReuse::fill(const GridLines& finest) const {
   HdrImage image{width_, height_, {}, {}};
   image.rgb.resize(3 * points_.size());
   image.optical_depth.resize(points_.size());
@@ -347,12 +368,13 @@ HdrImage PixelReuse::fill(const Lines& finest) const {
       glm::vec4 values = values_of(own);
       if (own.distance_m < 0 || !is_new(own)) {
         const Around around = points_around(x, y);
-        glm::vec4 sum = around.mine;
+        const Range& range = range_at(finest, x, y);
+        const glm::vec4 rise(range.rise_x * around.apart.x + range.rise_y * around.apart.y, 0.0f);
+        glm::vec4 sum = around.mine - rise;
         float weight = around.my_weight;
         if (around.old_weight > 0) {
           glm::vec4 old = around.old / around.old_weight;
 #if !defined(NEPHO_MUTANT_REUSE_UNCLAMPED)
-          const Range& range = range_at(finest, x, y);
           old = glm::vec4(glm::clamp(glm::vec3(old), range.low, range.high), old.w);
 #endif
           sum += around.old_weight * old;
@@ -363,7 +385,7 @@ HdrImage PixelReuse::fill(const Lines& finest) const {
           sum += rest * bilinear(finest, x, y);
           weight += rest;
         }
-        values = sum / weight;
+        values = glm::max(sum / weight, glm::vec4(0.0f));
       }
       const std::size_t p = at(x, y);
       for (int c = 0; c < 3; ++c) image.rgb[3 * p + std::size_t(c)] = values[c];

@@ -5,16 +5,12 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "gl/pixel_plan.h"
+#include "live/grid_lines.h"
 #include "live/pixel_shares.h"
 #include "renderer.h"
 #include "shaders/frame.layout.h"
 
 namespace nepho {
-
-// How far from the eye what each pixel shows is, m: the cloud where it hides enough, else the
-// ground; kNoGround_m where there is neither. `values.met` has the ground of a planet.
-std::vector<float> seen_distances(const gl::PixelValues& values, bool planet);
 
 // Whole pictures from a share of their pixels and what was marched for the last ones (a render
 // cache: Walter, Drettakis, Parker 1999). Each pixel holds one marched point, with its place in the
@@ -47,40 +43,26 @@ class PixelReuse {
   };
   // Of the newly marched pixels around a cell of their grid.
   struct Range {
-    glm::vec3 low, high;      // radiance
-    float farthest, nearest;  // 1 / distance
-  };
-  // Of a row or column of pixels: the lines of a grid before and behind it, the part of the way
-  // between them, the nearest one, and the number of the cell that it is in, 0 before the first
-  // line.
-  struct Line {
-    int before, after, nearest, cell;
-    float part;
-  };
-  struct Lines {
-    PixelGrid grid;
-    int columns, rows;
-    std::vector<Line> x, y;
-    int pixel_x(int column) const { return column * grid.step + grid.x; }
-    int pixel_y(int row) const { return row * grid.step + grid.y; }
-    std::size_t number(int column, int row) const {
-      return std::size_t(row) * std::size_t(columns) + std::size_t(column);
-    }
+    glm::vec3 low, high;       // radiance
+    float farthest, nearest;   // 1 / distance
+    glm::vec3 rise_x, rise_y;  // of radiance by pixel, as far as three cells in a row agree
   };
   struct View;
   // Sums of radiance and optical depth by weight: of points of this view, and of earlier ones.
   struct Around {
     glm::vec4 mine{0.0f}, old{0.0f};
     float my_weight = 0, old_weight = 0;
+    glm::vec2 apart{0.0f};  // of both, from the pixel's centre
   };
 
   void carry(const View& from, const View& to, std::uint32_t most_age);
   void take(const View& view, const PixelShares& shares, const std::vector<float>& distance_m);
-  Lines lines(const PixelGrid& grid) const;
-  void find_ranges(const Lines& finest);
-  bool stays(const Point& point, const Range& range, int x, int y, const Lines& newest) const;
-  glm::vec3 change_at(int x, int y, const Lines& newest) const;
-  void age(const Lines& finest, const Lines& newest);
+  void find_ranges(const GridLines& finest);
+  void find_rise(const GridLines& finest, int column, int row, Range& range) const;
+  bool stays(const Point& point, const Range& range, int x, int y, const GridLines& newest) const;
+  glm::vec3 change_at(int x, int y, const GridLines& newest) const;
+  void centre_changes(const GridLines& finest, const GridLines& newest);
+  void age(const GridLines& finest, const GridLines& newest);
   std::size_t at(int x, int y) const {
     return std::size_t(y) * std::size_t(width_) + std::size_t(x);
   }
@@ -89,9 +71,9 @@ class PixelReuse {
   bool expected(int x, int y, int reach, float near) const;
   Around points_around(int x, int y) const;
   static glm::vec4 values_of(const Point& point) { return {point.radiance, point.optical_depth}; }
-  glm::vec4 bilinear(const Lines& finest, int x, int y) const;
-  HdrImage fill(const Lines& finest) const;
-  const Range& range_at(const Lines& finest, int x, int y) const;
+  glm::vec4 bilinear(const GridLines& finest, int x, int y) const;
+  HdrImage fill(const GridLines& finest) const;
+  const Range& range_at(const GridLines& finest, int x, int y) const;
 
   int width_ = 0, height_ = 0;
   std::uint32_t frame_ = 0, view_begin_ = 0;
@@ -100,7 +82,10 @@ class PixelReuse {
   float slack_per_m_ = 0;             // of 1 / distance
   std::vector<Point> points_, next_;  // by pixel
   std::vector<std::int32_t> targets_;
-  std::vector<glm::vec3> changes_;  // by pixel of the last share
+  // By pixel of the last share: what has changed there, where that was seen, and whether it was at
+  // another distance.
+  std::vector<glm::vec3> changes_;
+  std::vector<glm::vec2> changes_at_;
   std::vector<std::uint8_t> unexpected_;
   std::vector<Range> ranges_;
   int range_columns_ = 0;
