@@ -35,6 +35,9 @@ struct RenderRequest {
   bool leave_nothing_out = false;
   // Compiles what any tree of these volumes may need, so that a view that moves compiles once.
   bool any_tree = false;
+  // The view pass also tells how far away what it sees is (gl::PixelValues::depths), to a program
+  // that was compiled with gl::kDepthSwitch.
+  bool keep_depths = false;
   // For tests: marches the light of all samples, each where it is (gl/light_samples.h).
   bool march_all_light = false;
   bool keep_lights = false;    // for tests: RenderResult::lights

@@ -15,7 +15,8 @@ constexpr float kWhole = 0, kBehindFront = 1, kFrontOnly = 2;
 
 // Rays entry_of(0) to entry_of(size - 1).
 template <typename EntryOf>
-PixelValues dispatch(const Program& program, std::size_t size, const EntryOf& entry_of) {
+PixelValues dispatch(const Program& program, std::size_t size, bool depths,
+                     const EntryOf& entry_of) {
   PixelValues found;
   found.seen.reserve(size);
   found.met.reserve(size);
@@ -33,6 +34,7 @@ PixelValues dispatch(const Program& program, std::size_t size, const EntryOf& en
     for (const Entry& entry : entries) {
       found.seen.push_back(entry[0]);
       found.met.push_back(entry[1]);
+      if (depths) found.depths.push_back(entry[2]);
     }
   }
   return found;
@@ -62,8 +64,8 @@ std::vector<std::uint32_t> all_pixels(int width, int height) {
 }
 
 PixelValues march_pixels(const Program& program, std::span<const std::uint32_t> list, int width,
-                         const PixelValues& values, const FrontAir* front) {
-  return dispatch(program, list.size(), [&](std::size_t n) {
+                         const PixelValues& values, const FrontAir* front, bool depths) {
+  return dispatch(program, list.size(), depths, [&](std::size_t n) {
     const std::uint32_t p = list[n], w = std::uint32_t(width);
     const float ground_m = values.met.empty() ? kNoGround_m : values.met[p][3];
     Entry entry{PixelTexel{}, PixelTexel{float(p % w), float(p / w), ground_m, kWhole}};
@@ -80,7 +82,7 @@ PixelValues march_pixels(const Program& program, std::span<const std::uint32_t> 
 
 void march_front(const Program& program, FrontAir& front) {
   const auto places = front.places();
-  front.set(dispatch(program, places.size(), [&](std::size_t n) {
+  front.set(dispatch(program, places.size(), false, [&](std::size_t n) {
     return Entry{PixelTexel{},
                  PixelTexel{float(places[n][0]), float(places[n][1]), kNoGround_m, kFrontOnly}};
   }));

@@ -27,9 +27,12 @@ std::vector<std::uint32_t> all_pixels(int width, int height);
 
 // Runs a shader of rays (view.comp, ground.comp) for the pixels of `list`, with the distances of
 // the ground in `values.met` (empty: none), and returns what it found, in their order. With the air
-// in front of the clouds, rays of the view begin behind it.
+// in front of the clouds, rays of the view begin behind it. `depths`: a view.comp that was compiled
+// with kDepthSwitch.
+inline constexpr const char* kDepthSwitch = "#define NEPHO_SEEN_DEPTH 1\n";
 PixelValues march_pixels(const Program& program, std::span<const std::uint32_t> list, int width,
-                         const PixelValues& values, const FrontAir* front = nullptr);
+                         const PixelValues& values, const FrontAir* front = nullptr,
+                         bool depths = false);
 
 // view.comp for that air alone.
 void march_front(const Program& program, FrontAir& front);

@@ -194,6 +194,12 @@ double PixelPlan::interpolate(PixelValues& values, int x, int y, const Stage& st
   met[3] = values.met[to][3];
   values.seen[to] = seen;
   values.met[to] = met;
+  if (!values.depths.empty()) {
+    PixelTexel& depth = values.depths[to];
+    for (std::size_t i = 0; i < 3; ++i)
+      depth[i] = 0.5f * (values.depths[from][i] + values.depths[from + step][i]);
+    depth[3] = met[3];
+  }
   const float light = std::max({light_bend[0], light_bend[1], light_bend[2]});
   const float passed = std::max({passed_bend[0], passed_bend[1], passed_bend[2]});
   return std::max(part_seen(to) * double(light) /
@@ -270,6 +276,7 @@ void PixelPlan::take(const PixelValues& marched, PixelValues& values) {
     }
     values.seen[p] = seen;
     values.met[p] = met;
+    if (!values.depths.empty()) values.depths[p] = marched.depths[n];
   }
   marched_ += asked_.size();
 }

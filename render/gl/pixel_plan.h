@@ -10,8 +10,12 @@ namespace nepho::gl {
 // optical depth of clouds; transmittance and the distance of the ground (m, kNoGround_m: none).
 using PixelTexel = std::array<float, 4>;
 inline constexpr float kNoGround_m = 1e30f;
+// Where it was asked for (RenderRequest::keep_depths), also how far away what is seen is: over the
+// cloud, what each place hides of what is behind it times its distance from the ray's start; the
+// sum of these parts; that start's distance from the eye; the ground's distance from that start
+// (m).
 struct PixelValues {
-  std::vector<PixelTexel> seen, met;
+  std::vector<PixelTexel> seen, met, depths = {};
 };
 
 // How far apart marched pixels may be along a row and a column, of tiles of kStrideTile pixels: 4,

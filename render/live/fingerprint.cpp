@@ -61,21 +61,35 @@ void add_looks(Numbers& numbers, const RenderRequest& request) {
     numbers.add(number);
 }
 
+void add_settings(Numbers& numbers, const RenderRequest& request) {
+  const RenderSettings& s = request.settings;
+  for (const double number :
+       {s.step_voxels.value_or(-1), s.tolerance, s.fetch ? double(*s.fetch) : -1, double(s.light),
+        double(s.octaves), double(s.pixels), s.pixels_per_voxel, double(s.max_level),
+        request.light_step_voxels.value_or(-1)})
+    numbers.add(number);
+}
+
 }  // namespace
 
 std::vector<double> fingerprint(const RenderRequest& request) {
   Numbers numbers;
   add_volumes(numbers, request);
   add_looks(numbers, request);
+  add_settings(numbers, request);
   const Camera& camera = request.camera;
   for (const glm::dvec3& v : {camera.eye_m, camera.target_m, camera.up}) numbers.add(v);
-  const RenderSettings& s = request.settings;
   for (const double number :
-       {camera.vertical_fov_rad, double(s.width), double(s.height), s.step_voxels.value_or(-1),
-        s.tolerance, s.fetch ? double(*s.fetch) : -1, double(s.light), double(s.octaves),
-        double(s.pixels), s.pixels_per_voxel, double(s.max_level),
-        request.light_step_voxels.value_or(-1)})
+       {camera.vertical_fov_rad, double(request.settings.width), double(request.settings.height)})
     numbers.add(number);
+  return numbers.take();
+}
+
+std::vector<double> look_fingerprint(const RenderRequest& request) {
+  Numbers numbers;
+  add_volumes(numbers, request);
+  add_looks(numbers, request);
+  add_settings(numbers, request);
   return numbers.take();
 }
 

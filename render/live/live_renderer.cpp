@@ -14,8 +14,10 @@
 #include "live/fingerprint.h"
 #include "live/light_batch.h"
 #include "live/live_error.h"
+#include "live/pixel_reuse.h"
 #include "live/pixel_shares.h"
 #include "live/resident_tree.h"
+#include "live/seen_distance.h"
 #include "live/tree_worker.h"
 
 extern const char* const nepho_shader_view;
@@ -61,6 +63,7 @@ class LiveRenderer::Impl {
   bool streaming() const { return next_ || !stale_.empty(); }
   LiveStatus status() const;
   std::optional<ErrorEstimate> error(const HdrImage& frame);
+  void reuse_pixels(bool reuse);
 
  private:
   // The next tree, while it is uploaded and lit.
@@ -78,6 +81,7 @@ class LiveRenderer::Impl {
   void light_some(ResidentTree& tree, std::uint64_t light, std::vector<std::size_t>& leaves);
   bool advance();
   HdrImage march(int each);
+  FrameData whole_view() const;
   void list_stale();
   void refresh_some();
   void bind(ResidentTree& tree, const FrameData& frame);
@@ -103,6 +107,10 @@ class LiveRenderer::Impl {
   bool changed_ = false;  // since the last frame
   PixelShares shares_;
   LiveError error_;  // ends before the worker, whose sources its tree reads
+  bool reuse_ = true;
+  PixelReuse pixels_;
+  std::vector<double> look_;        // of what they show
+  std::vector<float> distances_m_;  // of the last share
 };
 
 void LiveRenderer::Impl::set(const RenderRequest& request) {
@@ -279,13 +287,37 @@ void LiveRenderer::Impl::bind(ResidentTree& tree, const FrameData& frame) {
   if (ice_) glBindTextureUnit(2, ice_atlas_.id());
 }
 
+void LiveRenderer::Impl::reuse_pixels(bool reuse) {
+  if (reuse == reuse_) return;
+  reuse_ = reuse;
+  pixels_.clear();
+  changed_ = true;
+}
+
 HdrImage LiveRenderer::Impl::frame(int each) {
   if (!shown_) return {};
-  if (changed_ || each != shares_.each() || shares_.whole())
-    shares_.begin(each, request_.settings.width, request_.settings.height);
-  changed_ = false;
+  const bool changed = std::exchange(changed_, false);
+  if (changed || each != shares_.each() || shares_.whole())
+    shares_.begin(each, request_.settings.width, request_.settings.height, reuse_);
   shares_.add(march(each));
-  return shares_.picture();
+  if (!reuse_ || each == 1) {
+    pixels_.clear();
+    return shares_.picture();
+  }
+  std::vector<double> look = look_fingerprint(*shown_->tree().request);
+  if (look != look_) pixels_.clear();
+  look_ = std::move(look);
+  HdrImage picture;
+  gl::timed(counts_.passes, "reuse",
+            [&] { picture = pixels_.picture(whole_view(), shares_, distances_m_, !changed); });
+  return picture;
+}
+
+// From where the last request stands, in its size.
+FrameData LiveRenderer::Impl::whole_view() const {
+  FrameData frame = shown_->tree().scene.frame;
+  gl::set_camera(frame, request_.camera, request_.settings);
+  return frame;
 }
 
 // The next share.
@@ -295,9 +327,11 @@ HdrImage LiveRenderer::Impl::march(int each) {
   request.camera = request_.camera;
   request.settings.width = request_.settings.width / each;
   request.settings.height = request_.settings.height / each;
+  request.keep_depths = reuse_;
   const int width = request.settings.width, height = request.settings.height;
-  FrameData frame = tree.scene.frame;
-  gl::set_camera(frame, request.camera, request.settings);
+  FrameData frame = whole_view();
+  frame.width = width;
+  frame.height = height;
   shift_to_share(frame, each, shares_.offset());
   bind(*shown_, frame);
   counts_.passes.clear();
@@ -307,10 +341,13 @@ HdrImage LiveRenderer::Impl::march(int each) {
     gl::timed(counts_.passes, "surface", [&] {
       values.met = planet->ground_distances(programs_, shown_->switches(false), width, height);
     });
+  // One program for pictures in shares and in one.
+  const std::string switches = (reuse_ ? gl::kDepthSwitch : "") + shown_->switches(true);
   gl::timed(counts_.passes, "view", [&] {
-    gl::march_view(request, tree.forest,
-                   programs_.get("view", nepho_shader_view, shown_->switches(true)), values);
+    gl::march_view(request, tree.forest, programs_.get("view", nepho_shader_view, switches),
+                   values);
   });
+  if (reuse_ && each > 1) distances_m_ = seen_distances(values, planet != nullptr);
   if (planet)
     gl::timed(counts_.passes, "ground", [&] {
       gl::light_ground(request, tree.forest, frame, planet->scene(),
@@ -375,6 +412,9 @@ HdrImage LiveRenderer::frame(int each) {
     throw Error({"a picture cannot be marched in such shares", "frame",
                  "a power of two that divides width and height", std::to_string(each), ""});
   return impl_->frame(each);
+}
+void LiveRenderer::reuse_pixels(bool reuse) {
+  impl_->reuse_pixels(reuse);
 }
 bool LiveRenderer::streaming() const {
   return impl_->streaming();

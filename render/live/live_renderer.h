@@ -54,10 +54,13 @@ class LiveRenderer {
   bool at_rest() const;
   // From the camera of the last request, in its size, with the tree that is there; empty before the
   // first. With `each`, a power of two that divides width and height: only every so many'th pixel
-  // of rows and columns is marched, a small picture; where nothing has changed, further frames
-  // march the others, until the picture is whole. What was marched before a change is not used
-  // after it.
+  // of rows and columns is marched; where nothing has changed, further frames march the others,
+  // until the picture is whole, as it is with `each` 1. Until then the other pixels are those of
+  // the frames before, moved to where they are seen now (pixel_reuse.h).
   HdrImage frame(int each = 1);
+  // Without reuse (it is on at first), what was marched before a change is not used after it: the
+  // first frame is a small picture of its own, and later ones have the nearest marched pixels.
+  void reuse_pixels(bool reuse);
   // The last frame is all that there is to see: update() says when there is more.
   bool whole() const;
   LiveStatus status() const;

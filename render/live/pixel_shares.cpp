@@ -23,15 +23,20 @@ void copy_pixel(const HdrImage& from, std::size_t source, HdrImage& to, std::siz
 
 }  // namespace
 
-void PixelShares::begin(int each, int width, int height) {
+void PixelShares::begin(int each, int width, int height, bool go_on) {
+  if (go_on && each == each_ && width == image_.width && height == image_.height) {
+    std::ranges::rotate(order_, order_.begin() + done_);
+  } else {
+    int bits = 0;
+    while (1 << bits < each) ++bits;
+    order_.clear();
+    for (int y = 0; y < each; ++y)
+      for (int x = 0; x < each; ++x) order_.push_back({x, y});
+    std::ranges::sort(order_, {}, [&](const auto& o) { return rank(o[0], o[1], bits); });
+  }
   each_ = each;
   done_ = 0;
-  int bits = 0;
-  while (1 << bits < each) ++bits;
-  order_.clear();
-  for (int y = 0; y < each; ++y)
-    for (int x = 0; x < each; ++x) order_.push_back({x, y});
-  std::ranges::sort(order_, {}, [&](const auto& o) { return rank(o[0], o[1], bits); });
+  known_.assign(order_.size(), 0);
   image_ = {width, height, {}, {}};
   image_.rgb.resize(3 * std::size_t(width) * std::size_t(height));
   image_.optical_depth.resize(std::size_t(width) * std::size_t(height));
@@ -40,6 +45,7 @@ void PixelShares::begin(int each, int width, int height) {
 void PixelShares::add(const HdrImage& share) {
   const auto [ox, oy] = offset();
   if (done_++ == 0) first_ = share;
+  known_[std::size_t(oy * each_ + ox)] = 1;
   for (int y = 0; y < share.height; ++y)
     for (int x = 0; x < share.width; ++x)
       copy_pixel(share, std::size_t(y * share.width + x), image_,
@@ -62,6 +68,21 @@ HdrImage PixelShares::picture() const {
                    std::size_t((y + order_[missing][1]) * image_.width + x + order_[missing][0]));
   }
   return filled;
+}
+
+PixelGrid PixelShares::finest_grid() const {
+  const auto all_there = [&](int step, const std::array<int, 2>& first) {
+    for (int y = first[1] % step; y < each_; y += step)
+      for (int x = first[0] % step; x < each_; x += step)
+        if (!has(x, y)) return false;
+    return true;
+  };
+  for (int step = 1; step < each_; step *= 2)
+    for (int n = 0; n < done_; ++n) {
+      const auto& offset = order_[std::size_t(n)];
+      if (all_there(step, offset)) return {step, offset[0] % step, offset[1] % step};
+    }
+  return {each_, order_[0][0], order_[0][1]};
 }
 
 // camera.glsl: x = (2 i + 1) / width - 1, and y the other way round.

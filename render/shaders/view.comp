@@ -5,7 +5,8 @@ layout(binding = 0) uniform sampler3D atlas;
 layout(binding = 1) uniform sampler3D light_atlas;
 // Three for each ray. Before: the second holds its pixel, the distance of the ground (planets) and
 // whether the air in front of the clouds is known (first and third: its light and what it leaves) or
-// asked for. After: radiance and optical depth; transmittance, and that distance.
+// asked for. After: radiance and optical depth; transmittance, and that distance; with NEPHO_SEEN_DEPTH
+// what the third holds is at `scattered`.
 layout(std430, binding = 5) restrict buffer PixelBuffer { vec4 pixels[]; };
 #include "head.glsl"
 vec2 light_tiles;
@@ -39,6 +40,13 @@ float passed(Seen seen) { return most_of(seen.transmittance); }
 #endif
 #include "lights.glsl"
 
+#ifdef NEPHO_SEEN_DEPTH
+// How far away what is seen is: over all steps of cloud, what each hides of what lies behind it, times
+// its distance from the ray's start, m; the sum of these parts; the distances of that start from the
+// eye and of the ground from that start, m.
+vec4 scattered = vec4(0.0, 0.0, 0.0, FAR);
+#endif
+
 // A step of cloud: its own light and optical depth, the transmittance at its end and its mean; air in front of and behind it, half each
 // (Strang's splitting).
 void add_step(inout Seen seen, vec3 light, float tau, float through, float mean, float t, float step_m) {
@@ -49,6 +57,10 @@ void add_step(inout Seen seen, vec3 light, float tau, float through, float mean,
   seen.radiance += seen.transmittance * step_m * mean * air_emission_at(weights);
 #endif
   seen.radiance += seen.transmittance * light;
+#ifdef NEPHO_SEEN_DEPTH
+  // Scattered half way where the step is thin, a mean free path on where it is thick.
+  scattered.xy += passed(seen) * (1.0 - through) * vec2(t + step_m * (mean / (1.0 + mean)), 1.0);
+#endif
 #ifdef NEPHO_MUTANT_EULER
   seen.transmittance *= max(1.0 - tau, 0.0);
 #else
@@ -99,6 +111,9 @@ Seen see() {
                                 : sky_radiance(sine, frame.zenith[c], frame.horizon[c], frame.below[c]);
 #ifdef NEPHO_ADAPTIVE
   behind = luminance_of(background);
+#endif
+#ifdef NEPHO_SEEN_DEPTH
+  scattered.w = end_m;
 #endif
   // Before the loop: llvmpipe runs what is in its branches at every turn.
   begin_lights();
@@ -151,11 +166,19 @@ void main() {
   begin_camera_ray(ivec2(asked.xy));
 #ifdef NEPHO_GROUND
   Seen seen = see(asked.z, asked.w, pixels[entry].rgb, pixels[entry + 2].rgb);
+#ifdef NEPHO_SEEN_DEPTH
+  scattered.w = asked.z;
+#endif
   pixels[entry + 1] = vec4(seen.transmittance, asked.z);
 #else
   Seen seen = see();
 #endif
   pixels[entry] = vec4(seen.radiance, seen.optical_depth);
+#ifdef NEPHO_SEEN_DEPTH
+  dvec3 moved = ray_start - vec_of(frame.eye_m);
+  scattered.z = float(sqrt(dot(moved, moved)));
+  pixels[entry + 2] = scattered;
+#endif
 #ifdef NEPHO_COUNT_SAMPLES
   atomicAdd(rays, 1u);
   atomicAdd(extinction_samples, extinction_count);

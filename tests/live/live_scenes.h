@@ -81,6 +81,18 @@ inline double apart(const HdrImage& a, const HdrImage& truth) {
   return std::sqrt(squares / double(pixels)) / (mean / double(pixels));
 }
 
+// A share as blocks of its pixels: what is shown without reuse.
+inline HdrImage in_blocks(const HdrImage& share, int each) {
+  HdrImage image{each * share.width, each * share.height, {}, {}};
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const auto p = std::size_t(y / each * share.width + x / each);
+      for (std::size_t c = 0; c < 3; ++c) image.rgb.push_back(share.rgb[3 * p + c]);
+      image.optical_depth.push_back(share.optical_depth[p]);
+    }
+  return image;
+}
+
 // A source whose bricks take their time.
 class SlowSource final : public BrickSource {
  public:

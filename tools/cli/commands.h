@@ -53,7 +53,7 @@ struct BenchOptions {
 struct ViewOptions {
   RenderOptions render;  // inputs (none: the procedural planet), camera, quality, data
   std::optional<std::string> frames, path, record, bench, screenshot, coarse;
-  bool settle = false;
+  bool settle = false, no_reuse = false;
 };
 
 // Each throws Error for what a user can cause, and prints its result on standard output.

@@ -241,6 +241,8 @@ void add_view_options(CLI::App& command, ViewOptions& o) {
   command.add_option(
       "--coarse", o.coarse,
       "1, 2, 4 or 8: in motion, every Nth pixel of the window (as the device can bear)");
+  command.add_flag("--no-reuse", o.no_reuse,
+                   "in motion, no pixels of the last pictures beside the new ones");
 }
 
 // A value given twice is a bad value; CLI11 calls it the same as a missing one.

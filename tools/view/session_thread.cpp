@@ -195,6 +195,7 @@ bool SessionThread::wait_for_wanted(Wanted& wanted) {
 void SessionThread::show(OpenedScene opened, const std::string& name) {
   try {
     session_ = std::make_unique<ViewSession>(std::move(opened), options_.coarse);
+    session_->reuse_pixels(options_.reuse);
     ++scene_;
     log(LogLevel::kInfo, "opened " + name);
     const std::lock_guard lock(mutex_);

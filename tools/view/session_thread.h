@@ -27,6 +27,7 @@ class SessionThread {
     bool settle = false;                 // a camera of it stays until nothing is to come
     int most_steps = 0;                  // then it stands still; 0: no end
     bool record = false, times = false;  // kept, of each step
+    bool reuse = true;                   // of pixels of the last pictures
   };
   // `window` has the context, and outlives this. Throws nothing: see check().
   SessionThread(Window& window, Options options);

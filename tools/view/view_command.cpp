@@ -129,7 +129,8 @@ SessionThread::Options Viewer::session_options() const {
           options_.settle,
           most_frames_,
           options_.record.has_value(),
-          most_frames_ > 0 || options_.bench.has_value()};
+          most_frames_ > 0 || options_.bench.has_value(),
+          !options_.no_reuse};
 }
 
 void Viewer::say(const std::string& text, bool error) {

@@ -25,6 +25,7 @@ class ViewSession {
   // where that cannot be, and nothing else of it counts then.
   void act(const WindowInput& input, double seconds);
   void apply(const Panel& panel);
+  void reuse_pixels(bool reuse) { live_->reuse_pixels(reuse); }
   void set_camera(const Camera& camera);  // replayed
   // One step of streaming, and a new picture where there is one. True where it is new.
   bool advance(int width, int height);
