@@ -97,6 +97,10 @@ TEST(Flight, AFirstPersonStandsOnTheGround) {
   Flight flight(above(9000), ball(), 1);
   flight.set_mode(FlightMode::kFirstPerson);
   EXPECT_NEAR(flight.height_m(), Flight::kLeastHeight_m, 1e-6);
+  const glm::dvec3 ahead = flight.camera().target_m - flight.camera().eye_m;
+  EXPECT_NEAR(glm::length(ahead), std::hypot(1000, 100), 1e-6);
+  EXPECT_NEAR(glm::dot(ahead, glm::dvec3(0, 0, 1)), 0, 1e-6);  // it looked down
+  EXPECT_GT(ahead.y, 1000);
   const glm::dvec3 before = flight.camera().eye_m;
   for (int n = 0; n < 100; ++n) flight.move(keys(1, 1, 1), 0.1);
   EXPECT_NEAR(flight.height_m(), Flight::kLeastHeight_m, 1e-6);

@@ -127,7 +127,7 @@ case $what in
     begin ball.json --record round.json
     until_said "at rest: error" 1
     act key m
-    act drag 120 20
+    act drag 100 20 480 150  # beside the panel
     end
     [ "$(ends round.json eye_m)" = 2 ] || fail "a drag in orbit goes nowhere"
     [ "$(ends round.json target_m)" = 1 ] || fail "an orbit lets go of what is looked at"

@@ -70,6 +70,12 @@ case $what in
     says "^view," times.csv
     view scene.json --path flown.json --bench times.json > said 2>&1 || fail "replay"
     says '"worst_ms"' times.json
+    # Each place until it is at rest: there is an error line then.
+    view scene.json --path flown.json --settle --bench settled.csv > said 2>&1 ||
+      { cat said; fail "a replay at rest"; }
+    says "at rest" said
+    says "^error (estimated): integration" said
+    says "^pass,frames,median_ms,worst_ms,clock" settled.csv
     # The picture brings its view back: drawn again, it is the same.
     "$program" render shot.ppm -o again.ppm > said
     "$program" compare shot.ppm again.ppm > said

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """What a frame costs, pass by pass, from three places over a procedural planet: space, 14 km, ground.
 
-  tools/bench/fly_views.py OUT_DIR [--nephoscope PROGRAM] [--frames N] [view options]
+  tools/bench/fly_views.py OUT_DIR [--nephoscope PROGRAM] [--frames N] [--only PLACE]
+                         [view options]
 
-The places are frames 0, 700 and 1474 of the camera path in the benchmark of Mulen (his
-thesis' program), 640x360, every pixel, its field of view and its sun, so that
-milliseconds stand beside those measured of that program in the same way: process CPU time of each
-pass. Its planet is a sphere of 6371 km, ours WGS 84 under water: eyes are put at the same height in
+The places are frames 0, 700 and 1474 of the camera path in the benchmark of the program of Mulen's
+thesis, 640x360, every pixel, its field of view and its sun, so that milliseconds stand beside those
+measured of that program in the same way: process CPU time of each pass. Its planet is a sphere of 6371 km, ours WGS 84 under water: eyes are put at the same height in
 the same direction from the centre, and look the same way. N cameras a place, each 1 mm beside the
 last, so that each has a frame of its own; each stays until its bricks and their light are there.
 Writes a path and a table (CSV) for each place; prints medians. Without a display, run it under
@@ -34,7 +34,7 @@ VIEWS = {
 SCENE = {
     "name": "the procedural planet",
     "volumes": [{"name": "sky", "source": "noise", "parameters": {"seed": 3, "land": 0}}],
-    "sun": {"direction": TO_SUN},
+    "sun": {"to_sun_ecef": TO_SUN},
     "image": {"width": 640, "height": 360},
     "render": {"budget_mib": 256, "probe_pixels": 0},
 }
@@ -82,7 +82,7 @@ def path(view, count):
 
 
 def main(words):
-    program, count, rest = "build/release/bin/nephoscope", 12, []
+    program, count, only, rest = "build/release/bin/nephoscope", 12, list(VIEWS), []
     if not words or words[0].startswith("-"):
         raise SystemExit(__doc__)
     out = pathlib.Path(words[0])
@@ -93,11 +93,13 @@ def main(words):
             program = next(left)
         elif word == "--frames":
             count = int(next(left))
+        elif word == "--only":
+            only = [next(left)]
         else:
             rest.append(word)
     (out / "planet.json").write_text(json.dumps(SCENE))
     tables = {}
-    for view in VIEWS:
+    for view in only:
         name = view.replace(" ", "_")
         (out / f"{name}.json").write_text(json.dumps(path(view, count)))
         done = subprocess.run(
@@ -110,9 +112,9 @@ def main(words):
         with open(out / f"{name}.csv", newline="") as file:
             tables[view] = {(row["pass"], row["clock"]): row for row in csv.DictReader(file)}
     passes = sorted({key for table in tables.values() for key in table})
-    print(f"\n{'median ms (worst)':24}" + "".join(f"{view:>20}" for view in VIEWS))
+    print(f"\n{'median ms (worst)':24}" + "".join(f"{view:>20}" for view in only))
     for key in passes:
-        cells = [tables[view].get(key) for view in VIEWS]
+        cells = [tables[view].get(key) for view in only]
         print(f"{key[0] + ', ' + key[1]:24}" + "".join(
             f"{float(c['median_ms']):11.1f} ({float(c['worst_ms']):6.0f})" if c else f"{'-':>20}"
             for c in cells))

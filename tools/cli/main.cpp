@@ -221,7 +221,13 @@ void add_bench_options(CLI::App& command, BenchOptions& o) {
                      "voxels, of what steps are measured against (a quarter of the finest step)");
 }
 
+constexpr const char* kKeys =
+    R"(In the window: W S A D move, E Q up and down, shift faster, control slower; drag turns, the wheel steps;
+M free, orbit, first person; R back to the start, H hides the panel, F12 a picture with its scene, Esc
+ends. Files that are dropped are opened.)";
+
 void add_view_options(CLI::App& command, ViewOptions& o) {
+  command.footer(kKeys);
   CLI::Option* frames =
       command.add_option("--frames", o.frames, "end after so many, and say how long they took");
   CLI::Option* path =

@@ -32,7 +32,13 @@ void Flight::set_camera(const Camera& camera) {
 
 void Flight::set_mode(FlightMode mode) {
   mode_ = mode;
-  if (mode == FlightMode::kFirstPerson) keep_above_ground();
+  if (mode != FlightMode::kFirstPerson) return;
+  // Who comes down looks ahead, not at his feet.
+  const glm::dvec3 up = up_at(camera_.eye_m), sight = camera_.target_m - camera_.eye_m;
+  const glm::dvec3 level = sight - glm::dot(sight, up) * up;
+  if (glm::length(level) > 0)
+    camera_.target_m = camera_.eye_m + glm::length(sight) * glm::normalize(level);
+  keep_above_ground();
 }
 
 void Flight::go_to(double latitude_deg, double longitude_deg, double height_m) {

@@ -11,7 +11,9 @@
 #include "common/planet_scene.h"
 #include "common/planet_view.h"
 #include "geo/place.h"
+#include "gl/frame_data.h"
 #include "image/tone.h"
+#include "live/live_budget.h"
 #include "scene/scene_file.h"
 #include "scene/utc.h"
 
@@ -114,13 +116,19 @@ void ViewSession::apply(const Panel& panel) {
   opened_.request.sun = sun_.sun();
 }
 
-// What was read is read again: the memory for it is another. The old stays where the new is too
-// small.
+// What was read is read again: the memory for it is another, and never both. The old stays where
+// the new is too small.
 void ViewSession::set_budget(double budget_mib) {
   RenderRequest request = wanted(frame_.width, frame_.height);
   request.settings.budget_mib = budget_mib;
-  auto live = std::make_unique<LiveRenderer>(request);
-  live_ = std::move(live);
+  share_budget(budget_mib, gl::sky_lights(request), gl::tells_ice(request));
+  live_.reset();
+  try {
+    live_ = std::make_unique<LiveRenderer>(request);
+  } catch (const Error&) {  // more than OpenGL gives
+    live_ = std::make_unique<LiveRenderer>(wanted(frame_.width, frame_.height));
+    throw;
+  }
   opened_.request.settings.budget_mib = budget_mib;
 }
 
@@ -261,7 +269,9 @@ void ViewSession::fill(Panel& panel) const {
                      ", speed " + length_text(flight_.speed_m_per_s()) + "/s",
                  line("frame %dx%d, %.1f ms", frame_.width, frame_.height, frame_ms_)};
   for (const PassReport& pass : status_.passes)
-    panel.lines.push_back(line("  %s %.1f ms", pass.name.c_str(), 1e3 * pass.cpu_s));
+    panel.lines.push_back(pass.gpu_s >= 0
+                              ? line("  %s %.1f ms GPU", pass.name.c_str(), 1e3 * pass.gpu_s)
+                              : line("  %s %.1f ms CPU", pass.name.c_str(), 1e3 * pass.cpu_s));
   panel.lines.push_back(
       line("%lu leaves of %lu nodes%s", status_.leaves, status_.nodes,
            status_.complete && status_.budget_bound ? ", the budget is full" : ""));

@@ -106,9 +106,9 @@ bool draw_volumes(Panel& panel) {
   return changed;
 }
 
-// Always there, whatever becomes of the panel.
-void draw_message(const Panel& panel) {
-  if (panel.message.empty()) return;
+// Always there, whatever becomes of the panel. Returns the height that it takes.
+float draw_message(const Panel& panel) {
+  if (panel.message.empty()) return 0;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float width = std::max(size.x - 2 * kMargin, 40.0f);
   ImGui::SetNextWindowPos({kMargin, size.y - kMargin}, ImGuiCond_Always, {0, 1});
@@ -122,19 +122,22 @@ void draw_message(const Panel& panel) {
   ImGui::TextUnformatted(panel.message.c_str());
   if (panel.message_is_error) ImGui::PopStyleColor();
   ImGui::PopTextWrapPos();
+  const float height = ImGui::GetWindowHeight() + kMargin;
   ImGui::End();
+  return height;
 }
 
 }  // namespace
 
 void draw_panel(Panel& panel) {
-  draw_message(panel);
+  const float taken = draw_message(panel);
   if (panel.hidden) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float width = std::min(kWidth, size.x - 2 * kMargin);
   ImGui::SetNextWindowPos({kMargin, kMargin}, ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowCollapsed(size.x < kRoomAcross || size.y < kRoomDown, ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, std::max(size.y - 2 * kMargin, 40.0f)});
+  const float room = std::max(size.y - 2 * kMargin - taken, 40.0f);
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, room});
   if (!ImGui::Begin("Nephoscope", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return ImGui::End();
   ImGui::PushItemWidth(-kLabel);
   ImGui::PushTextWrapPos(0);
@@ -151,8 +154,8 @@ void draw_panel(Panel& panel) {
   if (panel.planet && ImGui::CollapsingHeader("places")) changed |= draw_places(panel);
   if (ImGui::CollapsingHeader("frames", ImGuiTreeNodeFlags_DefaultOpen)) {
     ImGui::TextUnformatted(panel.busy ? "bricks, light or pixels are still to come" : "at rest");
-    for (const std::string& line : panel.lines) ImGui::TextUnformatted(line.c_str());
     ImGui::TextUnformatted(panel.error_line.c_str());
+    for (const std::string& line : panel.lines) ImGui::TextUnformatted(line.c_str());
   }
   if (ImGui::CollapsingHeader("keys and mouse")) ImGui::TextUnformatted(kKeys);
   panel.changed = changed;
