@@ -114,11 +114,13 @@ void PixelReuse::carry(const View& from, const View& to, std::uint32_t most_age)
       }
       glm::vec2 at;
       if (!to.seen_at(point.place_m, at)) continue;
-      const glm::vec2 pixel = glm::floor(at + 0.5f);
-      if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < float(width_) && pixel.y < float(height_)))
+      const glm::vec2 corner = at + 0.5f;
+      if (!(corner.x >= 0 && corner.y >= 0 && corner.x < float(width_) &&
+            corner.y < float(height_)))
         continue;
-      point.at = at - pixel;
-      targets_[p] = int(pixel.y) * width_ + int(pixel.x);
+      const int column = int(corner.x), row = int(corner.y);
+      point.at = at - glm::vec2(column, row);
+      targets_[p] = row * width_ + column;
     }
   });
   next_.assign(points_.size(), {});

@@ -18,7 +18,9 @@ for shader in "$folder"/*.comp; do
   # LIT says that there are light tiles to read: not while they are made, nor in a planet's passes,
   # which other scenes never compile.
   drop=NEPHO_LIT
+  extra=
   case $name in
+    view.comp) drop=nothing extra=NEPHO_SEEN_DEPTH ;;  # what a view that moves asks for
     light_*) ;;
     sun_map.comp) grep -q NEPHO_SUN_MAP "$scratch/switches" || continue ;;
     ground.comp | surface.comp) grep -q NEPHO_GROUND "$scratch/switches" || continue ;;
@@ -26,6 +28,10 @@ for shader in "$folder"/*.comp; do
   esac
   { sed -n 1p "$shader"; grep -v " $drop " "$scratch/switches"; sed 1d "$shader"; } >"$scratch/$name"
   "$validator" "$scratch/$name" || failed=$((failed + 1))
+  count=$((count + 1))
+  [ -n "$extra" ] || continue
+  sed "1a #define $extra 1" "$scratch/$name" >"$scratch/$extra.comp"
+  "$validator" "$scratch/$extra.comp" || failed=$((failed + 1))
   count=$((count + 1))
 done
 echo "parse: $failed of $count refused, with" $(sed 's/#define NEPHO_//' "$scratch/switches" |
