@@ -64,6 +64,11 @@ case $what in
     says "^view," times.csv
     view scene.json --path flown.json --bench times.json > said 2>&1 || fail "replay"
     says '"worst_ms"' times.json
+    view scene.json --coarse 4 --path flown.json --bench reuse.csv > said 2>&1 || fail "every fourth"
+    says "^reuse," reuse.csv
+    view scene.json --coarse 4 --path flown.json --no-reuse --bench bare.csv > said 2>&1 ||
+      fail "no reuse"
+    if grep -q "^reuse," bare.csv; then fail "--no-reuse uses pixels again"; fi
     # The picture brings its view back: drawn again, it is the same.
     "$program" render shot.ppm -o again.ppm > said
     "$program" compare shot.ppm again.ppm > said
