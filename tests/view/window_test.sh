@@ -76,6 +76,11 @@ case $what in
     says "at rest" said
     says "^error (estimated): integration" said
     says "^pass,frames,median_ms,worst_ms,clock" settled.csv
+    view scene.json --coarse 4 --path flown.json --bench reuse.csv > said 2>&1 || fail "every fourth"
+    says "^reuse," reuse.csv
+    view scene.json --coarse 4 --path flown.json --no-reuse --bench bare.csv > said 2>&1 ||
+      fail "no reuse"
+    if grep -q "^reuse," bare.csv; then fail "--no-reuse uses pixels again"; fi
     # The picture brings its view back: drawn again, it is the same.
     "$program" render shot.ppm -o again.ppm > said
     "$program" compare shot.ppm again.ppm > said
