@@ -11,9 +11,9 @@ namespace nepho::gl {
 using PixelTexel = std::array<float, 4>;
 inline constexpr float kNoGround_m = 1e30f;
 // Where it was asked for (RenderRequest::keep_depths), also how far away what is seen is: over the
-// cloud, what each place hides of what is behind it times its distance from the ray's start; the
-// sum of these parts; that start's distance from the eye; the ground's distance from that start
-// (m).
+// cloud, what each place hides of what is behind it times its distance from the ray's start (all of
+// it where half is hidden, if so much is); the sum of these parts; that start's distance from the
+// eye; the ground's distance from that start (m).
 struct PixelValues {
   std::vector<PixelTexel> seen, met, depths = {};
 };

@@ -4,8 +4,9 @@ namespace nepho {
 namespace {
 
 // What a cloud hides of what is behind it, for the pixel to go where the cloud goes: the sky has no
-// marks that would be missed.
-constexpr float kHidesSky = 0.02f, kHidesGround = 0.3f;
+// marks that would be missed, and the fringe of a bright cloud is a speck on dark ground where the
+// cloud has moved on.
+constexpr float kHidesSky = 0.02f, kHidesGround = 0.1f;
 
 }  // namespace
 

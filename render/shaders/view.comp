@@ -45,6 +45,9 @@ float passed(Seen seen) { return most_of(seen.transmittance); }
 // its distance from the ray's start, m; the sum of these parts; the distances of that start from the
 // eye and of the ground from that start, m.
 vec4 scattered = vec4(0.0, 0.0, 0.0, FAR);
+// Where half of what lies behind is hidden; that far away is what hides so much, as a mean of two clouds
+// would be between them.
+float half_hidden_m = -1.0;
 #endif
 
 // A step of cloud: its own light and optical depth, the transmittance at its end and its mean; air in front of and behind it, half each
@@ -59,7 +62,9 @@ void add_step(inout Seen seen, vec3 light, float tau, float through, float mean,
   seen.radiance += seen.transmittance * light;
 #ifdef NEPHO_SEEN_DEPTH
   // Scattered half way where the step is thin, a mean free path on where it is thick.
-  scattered.xy += passed(seen) * (1.0 - through) * vec2(t + step_m * (mean / (1.0 + mean)), 1.0);
+  float here = passed(seen);
+  if (here > 0.5 && here * through <= 0.5) half_hidden_m = t + step_m * (log(2.0 * here) / tau);
+  scattered.xy += here * (1.0 - through) * vec2(t + step_m * (mean / (1.0 + mean)), 1.0);
 #endif
 #ifdef NEPHO_MUTANT_EULER
   seen.transmittance *= max(1.0 - tau, 0.0);
@@ -177,6 +182,7 @@ void main() {
 #ifdef NEPHO_SEEN_DEPTH
   dvec3 moved = ray_start - vec_of(frame.eye_m);
   scattered.z = float(sqrt(dot(moved, moved)));
+  if (half_hidden_m >= 0.0) scattered.x = half_hidden_m * scattered.y;
   pixels[entry + 2] = scattered;
 #endif
 #ifdef NEPHO_COUNT_SAMPLES
