@@ -80,11 +80,12 @@ ViewSession::ViewSession(OpenedScene opened, int coarse)
 void ViewSession::act(const WindowInput& input, double seconds) {
   if (input.reset) flight_.reset();
   if (input.next_mode) flight_.set_mode(FlightMode((int(flight_.mode()) + 1) % 3));
-  flight_.move(input, seconds);
+  moved_ |= flight_.move(input, seconds);
 }
 
 void ViewSession::set_camera(const Camera& camera) {
   flight_.set_camera(camera);
+  moved_ = true;
 }
 
 // Where angles of the sun are told: under what the camera looks at.
@@ -183,10 +184,11 @@ bool ViewSession::advance(int width, int height) {
   update_error();
   if ((!fresh && !show_again_) || frame_.rgb.empty()) return false;
   const FloatImage linear = linear_image(frame_);
-  // Until the first whole tree is there; then exposure stays, whatever comes into sight.
+  // Until the first whole picture of the whole tree is there, or somebody moves on; then exposure
+  // stays, whatever comes into sight.
   if (!exposure_ev_ || exposure_found_) {
     exposure_ev_ = find_exposure(opened_, linear, frame_.optical_depth);
-    exposure_found_ = !status_.complete;
+    exposure_found_ = !status_.complete || !(live_->whole() || moved_);
   }
   picture_ = to_display(linear, *exposure_ev_, opened_.scene.tone_map, opened_.scene.dither,
                         display_white(opened_.scene));

@@ -62,7 +62,8 @@ class ViewSession {
   int coarse_, each_ = 1;     // of the next picture; of the one that is being made
   int slow_ = 0, quick_ = 0;  // frames in a row
   std::optional<double> exposure_ev_;
-  bool exposure_found_ = false;  // and may be found again in a finer tree
+  bool exposure_found_ = false;  // and may be found again in a better picture
+  bool moved_ = false;           // away from the scene's camera
   std::unique_ptr<LiveRenderer> live_;
   LiveStatus status_;
   std::optional<ErrorEstimate> error_;
