@@ -6,9 +6,10 @@
 
 The places are frames 0, 700 and 1474 of the camera path in the benchmark of the program of Mulen's
 thesis, 640x360, every pixel, its field of view and its sun, so that milliseconds stand beside those
-measured of that program in the same way: process CPU time of each pass. Its planet is a sphere of 6371 km, ours WGS 84 under water: eyes are put at the same height in
-the same direction from the centre, and look the same way. N cameras a place, each 1 mm beside the
-last, so that each has a frame of its own; each stays until its bricks and their light are there.
+measured of that program in the same way: process CPU time of each pass. Its planet is a sphere of
+6371 km, ours WGS 84 under water: eyes are put at the same height in the same direction from the
+centre, and look the same way. N cameras a place, each 1 mm beside the last, so that each has a frame
+of its own; each stays until its bricks and their light are there: minutes a place on a CPU.
 Writes a path and a table (CSV) for each place; prints medians. Without a display, run it under
 xvfb-run. Python's standard library only.
 """
