@@ -27,7 +27,8 @@ struct RenderRequest {
   Sun sun;
   Sky sky;  // without a planet: background and light
   // With it: its ground and air are the background, light the clouds and stand before them; `sky`
-  // is not used. The ground's shape is `terrain`, or that of the first volume that has a surface map.
+  // is not used. The ground's shape is `terrain`, or that of the first volume that has a surface
+  // map.
   std::optional<Planet> planet;
   const SurfaceMap* terrain = nullptr;  // in place of the volumes'; outlives the renderer
   RenderSettings settings;

@@ -42,7 +42,7 @@ struct VolumeSpec {
   std::optional<double> time_s;
   std::optional<std::int64_t> utc_ns;  // since 1970-01-01T00:00:00 UTC
   std::string time_choice = {};
-  std::string where = {};              // file, line, column and field, for messages
+  std::string where = {};  // file, line, column and field, for messages
 };
 
 struct Camera {
@@ -110,7 +110,8 @@ struct RenderSettings {
   int width = 640, height = 360;
   double budget_mib = 256;
   // Exactly one rules the march: a fixed step in voxels, or the relative error of the integration
-  // along view rays that 99 % of the pixels keep below. step_voxels = 0: the cell-exact reference setting.
+  // along view rays that 99 % of the pixels keep below. step_voxels = 0: the cell-exact reference
+  // setting.
   std::optional<double> step_voxels;
   double tolerance = 1e-2;
   std::optional<Fetch> fetch;  // absent: kFilter, or kTexels8 where the tolerance is below 2e-3

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "accuracy_report.h"
-#include "made_source.h"
 #include "forecast/grids/cell_size.h"
+#include "made_source.h"
 #include "remapped.h"
 
 namespace nepho::test {

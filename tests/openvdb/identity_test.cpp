@@ -15,9 +15,8 @@ Identity compare_twin(const std::string& name, const std::string& grid = "densit
 }
 
 TEST(Identity, HoldsForEveryTwin) {
-  for (const char* name :
-       {"plain", "half", "double", "non_uniform", "sheared", "no_class", "not_finite", "background",
-        "zeros"}) {
+  for (const char* name : {"plain", "half", "double", "non_uniform", "sheared", "no_class",
+                           "not_finite", "background", "zeros"}) {
     const Identity found = compare_twin(name);
     expect_identity(name, found);
     EXPECT_GT(found.not_zero, 30000u) << name;

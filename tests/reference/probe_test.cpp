@@ -9,10 +9,10 @@
 #include "accuracy_report.h"
 #include "analytic_field.h"
 #include "bricks/quantise.h"
-#include "reference/march_picture.h"
 #include "march_support.h"
 #include "random.h"
 #include "reference/error_metric.h"
+#include "reference/march_picture.h"
 
 namespace nepho {
 namespace {

@@ -10,9 +10,9 @@
 #include "gl/frame_data.h"
 #include "gl_fixture.h"
 #include "host/source_host.h"
-#include "reference/march_picture.h"
 #include "random.h"
 #include "reference/error_metric.h"
+#include "reference/march_picture.h"
 #include "scenes.h"
 
 namespace nepho::test {

@@ -13,8 +13,8 @@
 #include "error_scenes.h"
 #include "gl/frame_data.h"
 #include "gl_fixture.h"
-#include "reference/march_picture.h"
 #include "reference/error_metric.h"
+#include "reference/march_picture.h"
 #include "reference/path/path_picture.h"
 #include "reference/path/path_tracer.h"
 

@@ -11,10 +11,10 @@
 #include "dressed_source.h"
 #include "gl/frame_data.h"
 #include "gl_fixture.h"
-#include "reference/march_picture.h"
 #include "planet_quadrature.h"
 #include "random.h"
 #include "reference/error_metric.h"
+#include "reference/march_picture.h"
 #include "reference/probe.h"
 
 namespace nepho::test {

@@ -142,8 +142,7 @@ std::string command_line(const BenchOptions& options) {
        {std::pair{"--size", &options.size}, std::pair{"--repeat", &options.repeats},
         std::pair{"--spp", &options.spp}, std::pair{"--exact-orders", &options.exact_orders},
         std::pair{"--host-mib", &options.host_mib},
-        std::pair{"--finest-step", &options.finest_step},
-        std::pair{"--terrain", &options.terrain}})
+        std::pair{"--finest-step", &options.finest_step}, std::pair{"--terrain", &options.terrain}})
     if (*value) text += std::string(" ") + name + " " + **value;
   return text;
 }

@@ -17,8 +17,8 @@ enum class InputKind { kScene, kPicture, kData };
 InputKind input_kind(const std::string& input);
 // The scene in a picture's metadata; throws Error where there is none.
 Scene scene_in_picture(const std::filesystem::path& path, const PictureFiles& pictures);
-// One volume of one data file (or name.####.vdb): NetCDF and GRIB by their first bytes, all else by its
-// ending. Throws Error for what is known to be something else.
+// One volume of one data file (or name.####.vdb): NetCDF and GRIB by their first bytes, all else by
+// its ending. Throws Error for what is known to be something else.
 VolumeSpec data_volume(const std::string& file);
 
 // Lays an option over every volume that has files.

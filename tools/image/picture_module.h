@@ -5,8 +5,8 @@
 
 namespace nepho {
 
-// The C entry of the run-time modules that know PNG, EXR and HDR: nothing but plain pointers crosses,
-// nothing throws. The program opens one only when such a picture is written or read.
+// The C entry of the run-time modules that know PNG, EXR and HDR: nothing but plain pointers
+// crosses, nothing throws. The program opens one only when such a picture is written or read.
 
 inline constexpr std::uint32_t kPictureModuleVersion = 1;
 

@@ -13,8 +13,8 @@
 namespace nepho::forecast {
 namespace {
 
-constexpr double kLeastHeight_m = 50;         // of a voxel, where nobody asks for less
-constexpr double kMostSampleColumns = 3e7;    // 2 GB of rows and tiles
+constexpr double kLeastHeight_m = 50;       // of a voxel, where nobody asks for less
+constexpr double kMostSampleColumns = 3e7;  // 2 GB of rows and tiles
 constexpr double kMostNestedColumns = 6e6;  // 2 GB, where nobody asked for as many
 
 // Columns at least as narrow as asked; of the model's own width the nearest power of two, where its
