@@ -64,16 +64,36 @@ TEST_F(Groups, NamesAreSoughtInTheirOwnGroupFirst) {
   EXPECT_EQ(contents(twin.write("groups_own_dimensions")), flat);
 }
 
-TEST_F(Groups, WaterOfTwoGroupsIsRefusedWithTheCure) {
-  CfTwin twin;
-  twin.fields_in = "first/";
-  twin.more = [](NcWriter& nc) {
-    nc.variable("second/clw", NC_FLOAT, {"time", "level", "lat", "lon"},
-                std::vector<double>(2 * 4 * 5 * 6, 1e-4), {{"units", std::string("kg kg-1")}});
+// Nothing says which is meant.
+TEST_F(Groups, FieldsOfTwoGroupsAreRefusedWithTheCure) {
+  struct Rival {
+    std::string name, units, standard_name;
   };
-  const std::string said = refusal(twin.write("groups_rivals"));
-  EXPECT_NE(said.find("first/clw"), std::string::npos) << said;
-  EXPECT_NE(said.find("second/clw"), std::string::npos) << said;
+  const auto write = [](const std::vector<Rival>& rivals) {
+    CfTwin twin;
+    twin.fields_in = "first/";
+    twin.more = [&rivals](NcWriter& nc) {
+      for (const Rival& r : rivals) {
+        Attributes attributes = {{"units", r.units}};
+        if (!r.standard_name.empty()) attributes["standard_name"] = r.standard_name;
+        nc.variable(r.name, NC_FLOAT, {"time", "level", "lat", "lon"},
+                    std::vector<double>(2 * 4 * 5 * 6, 1e-4), attributes);
+      }
+    };
+    return twin.write("groups_rivals");
+  };
+  const auto is_refused = [&](const std::vector<Rival>& rivals, const std::string& a,
+                              const std::string& b) {
+    const std::string said = refusal(write(rivals));
+    for (const std::string& part : {std::string("two groups"), std::string("--names"), a, b})
+      EXPECT_NE(said.find(part), std::string::npos) << part << " in: " << said;
+  };
+  is_refused({{"second/clw", "kg kg-1", ""}}, "first/clw", "second/clw");
+  is_refused({{"second/t", "K", ""}}, "first/t", "second/t");
+  const std::string liquid = "mass_fraction_of_cloud_liquid_water_in_air";
+  is_refused({{"second/water", "kg kg-1", liquid}, {"third/liquid", "kg kg-1", liquid}}, "water",
+             "liquid");
+  EXPECT_EQ(contents(write({{"second/other", "kg kg-1", ""}})), flat);
 }
 
 TEST(GroupNames, AreShortWhereTheyCanBe) {

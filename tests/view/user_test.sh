@@ -107,10 +107,10 @@ case $what in
     begin ball.json
     until_said "at rest: error" 1
     act key F12
+    act key F12  # while the first is drawn, or about to be
     until_said "nephoscope-1.*: error (estimated)" 1
-    picture=$(ls nephoscope-1.*)
-    act key F12
     until_said "nephoscope-2.*: error (estimated)" 1
+    picture=$(ls nephoscope-1.*)
     end
     "$program" render "$picture" -o "again.${picture##*.}" > /dev/null 2>&1
     "$program" compare "$picture" "again.${picture##*.}" --json > apart.json
@@ -131,6 +131,18 @@ case $what in
     end
     [ "$(ends round.json eye_m)" = 2 ] || fail "a drag in orbit goes nowhere"
     [ "$(ends round.json target_m)" = 1 ] || fail "an orbit lets go of what is looked at"
+    ;;
+  first)
+    # Nothing of what was named can be shown: the message, and the planet instead.
+    echo "no cloud" > broken.nc
+    begin broken.nc
+    until_said "warning: .*broken.nc" 1
+    until_said "opened the procedural planet" 1
+    end
+    begin ball.json --budget-mib 1
+    until_said "warning: .*no room" 1
+    until_said "opened the procedural planet" 1
+    end
     ;;
   *) fail "no such case: $what" ;;
 esac

@@ -53,11 +53,11 @@ TEST(ViewSun, StandsAsAtADate) {
   EXPECT_EQ(std::string(panel.sun_utc.data()), "2024-01-03T12:00:00Z");
   EXPECT_NEAR(panel.sun_hour, 12, 1e-9);
   const glm::dvec3 before = sun.sun().to_sun;
-  sun.apply(panel, greenwich());  // nothing was done
+  sun.apply(panel, filled(sun), greenwich());  // nothing was done
   EXPECT_EQ(sun.sun().to_sun, before);
 
   // Half a year on the Earth is 1.7 % farther from it, and the light 6.7 % weaker.
-  sun.apply(typed(sun, "2024-07-05T12:00:00Z"), greenwich());
+  sun.apply(typed(sun, "2024-07-05T12:00:00Z"), filled(sun), greenwich());
   const SunPosition summer = sun_position(utc_ns_value("2024-07-05T12:00:00Z", "test"));
   const SunPosition winter = sun_position(utc_ns_value("2024-01-03T12:00:00Z", "test"));
   EXPECT_EQ(sun.sun().to_sun, summer.to_sun);
@@ -67,7 +67,7 @@ TEST(ViewSun, StandsAsAtADate) {
 
   panel = filled(sun);
   panel.sun_hour = 18.5;
-  sun.apply(panel, greenwich());
+  sun.apply(panel, filled(sun), greenwich());
   EXPECT_EQ(std::string(filled(sun).sun_utc.data()), "2024-07-05T18:30:00Z");
 }
 
@@ -75,7 +75,7 @@ TEST(ViewSun, OfABadDateNothingIsTaken) {
   ViewSun sun(over_the_planet("2024-01-03T12:00:00Z"));
   const glm::dvec3 before = sun.sun().to_sun;
   for (const char* date : {"noon", "2024-13-01", "", "2024-01-03T25:00Z"})
-    EXPECT_THROW(sun.apply(typed(sun, date), greenwich()), Error) << date;
+    EXPECT_THROW(sun.apply(typed(sun, date), filled(sun), greenwich()), Error) << date;
   EXPECT_EQ(sun.sun().to_sun, before);
 }
 
@@ -84,13 +84,13 @@ TEST(ViewSun, IsFreeWhereItIsAsked) {
   const glm::dvec3 before = sun.sun().to_sun;
   Panel panel = filled(sun);
   panel.sun_dated = false;
-  sun.apply(panel, greenwich());
+  sun.apply(panel, filled(sun), greenwich());
   EXPECT_LT(glm::length(sun.sun().to_sun - before), 1e-9);  // where it stands
   panel = filled(sun);
   EXPECT_FALSE(panel.sun_dated);
   panel.sun_azimuth_deg = 250;
   panel.sun_elevation_deg = 5;
-  sun.apply(panel, greenwich());
+  sun.apply(panel, filled(sun), greenwich());
   const glm::dvec2 angles = sun_angles_deg(greenwich(), sun.sun().to_sun);
   EXPECT_NEAR(angles.x, 250, 1e-9);
   EXPECT_NEAR(angles.y, 5, 1e-9);
@@ -100,7 +100,7 @@ TEST(ViewSun, IsFreeWhereItIsAsked) {
   EXPECT_EQ(sun.sun().to_sun, free);
   panel = filled(sun);
   panel.sun_dated = true;
-  sun.apply(panel, greenwich());
+  sun.apply(panel, filled(sun), greenwich());
   EXPECT_EQ(sun.sun().to_sun, sun_position(utc_ns_value("2024-03-01T06:00:00Z", "test")).to_sun);
   sun.follow(utc_ns_value("2024-03-01T09:00:00Z", "test"));
   EXPECT_EQ(sun.sun().to_sun, sun_position(utc_ns_value("2024-03-01T09:00:00Z", "test")).to_sun);
@@ -110,7 +110,7 @@ TEST(ViewSun, KeepsALightThatTheSceneStates) {
   OpenedScene opened = over_the_planet("2024-01-03T12:00:00Z");
   opened.sun_distance_au = 0;
   ViewSun sun(opened);
-  sun.apply(typed(sun, "2024-07-05T12:00:00Z"), greenwich());
+  sun.apply(typed(sun, "2024-07-05T12:00:00Z"), filled(sun), greenwich());
   EXPECT_EQ(sun.sun().irradiance_W_per_m2_nm.g, kIrradiance);
 }
 

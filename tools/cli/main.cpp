@@ -227,7 +227,7 @@ M free, orbit, first person; R back to the start, H hides the panel, F12 a pictu
 ends. Files that are dropped are opened.)";
 
 void add_view_options(CLI::App& command, ViewOptions& o) {
-  command.footer(kKeys);
+  command.footer(std::string(kKeys) + "\n\n" + kExamples);
   CLI::Option* frames =
       command.add_option("--frames", o.frames, "end after so many, and say how long they took");
   CLI::Option* path =
@@ -286,7 +286,6 @@ int run(int argc, char** argv) {
   add_data_options(*fly, view.render.grid, view.render.names, view.render.up,
                    view.render.metres_per_unit, view.render.density_scale, view.render.frame);
   add_drawn_data_options(*fly, view.render);
-  fly->footer(kExamples);
   fly->callback([&] { view_command(view); });
 
   InfoOptions info;

@@ -59,7 +59,9 @@ void SessionThread::apply(const Panel& panel) {
   if (!panel.changed || !has_session_) return;
   const bool go = wanted_.panel && wanted_.panel->go;
   const bool typed = wanted_.panel && wanted_.panel->sun_utc_typed;
+  if (!wanted_.panel) wanted_.panel_before = filled_;
   wanted_.panel = panel;
+  filled_ = panel;
   wanted_.panel->go |= go;
   wanted_.panel->sun_utc_typed |= typed;
   wanted_.panel_number = ++panels_posted_;
@@ -101,6 +103,7 @@ bool SessionThread::fill(Panel& panel) {
   }
   panel.go = panel.sun_utc_typed = false;
   panel.changed = false;
+  filled_ = panel;
   if (!fresh_) return false;
   picture_ = std::move(fresh_);
   return true;
@@ -167,7 +170,8 @@ void SessionThread::run(Window& window) {
     const std::lock_guard lock(mutex_);
     ended_by_ = std::current_exception();
   }
-  session_.reset();  // while its context is current
+  before_.reset();  // while their context is current
+  session_.reset();
   window.leave_second_context();
   handled_one_.notify_all();
 }
@@ -194,8 +198,10 @@ bool SessionThread::wait_for_wanted(Wanted& wanted) {
 
 void SessionThread::show(OpenedScene opened, const std::string& name) {
   try {
-    session_ = std::make_unique<ViewSession>(std::move(opened), options_.coarse);
-    session_->reuse_pixels(options_.reuse);
+    auto session = std::make_unique<ViewSession>(std::move(opened), options_.coarse);
+    session->reuse_pixels(options_.reuse);
+    if (!before_) before_ = std::move(session_);
+    session_ = std::move(session);
     ++scene_;
     log(LogLevel::kInfo, "opened " + name);
     const std::lock_guard lock(mutex_);
@@ -213,6 +219,8 @@ void SessionThread::do_tasks(const std::vector<Task>& tasks) {
       if (!text.empty()) add_news({std::move(text), {}});
     } catch (const Error& error) {
       add_news({"", error});
+    } catch (const std::exception& error) {
+      add_news({"", Error({"the picture was not drawn", "", "", error.what(), ""})});
     }
   }
 }
@@ -221,7 +229,16 @@ void SessionThread::step(const Wanted& wanted) {
   const auto now = Clock::now();
   const double cpu_s = thread_cpu_s();
   move(wanted);
-  fresh_step_ = session_->advance(width_, height_);
+  try {
+    fresh_step_ = session_->advance(width_, height_);
+  } catch (const Error& error) {
+    if (!before_) throw;
+    session_ = std::move(before_);
+    ++scene_;
+    add_news({"", error});
+    return;
+  }
+  if (fresh_step_) before_.reset();
   publish(wanted);
   if (fresh_step_ || session_->status().failure) flown_ = true;
   if (flown_ || !options_.replay) note_step(now, cpu_s);
@@ -229,7 +246,7 @@ void SessionThread::step(const Wanted& wanted) {
 
 void SessionThread::move(const Wanted& wanted) {
   if (wanted.panel && wanted.panel_scene == scene_) try {
-      session_->apply(*wanted.panel);
+      session_->apply(*wanted.panel, wanted.panel_before);
     } catch (const Error& error) {
       add_news({"", error});
     }

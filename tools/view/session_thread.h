@@ -74,6 +74,7 @@ class SessionThread {
     std::optional<WindowInput> input;
     double seconds = 0;
     std::optional<Panel> panel;
+    Panel panel_before;
     std::uint64_t panel_number = 0, panel_scene = 0;  // how many before it, and of which scene
     std::vector<Task> tasks;
     bool any() const { return opened || input || panel || !tasks.empty(); }
@@ -110,9 +111,11 @@ class SessionThread {
   // Of the window's thread only.
   std::shared_ptr<const ByteImage> picture_ = std::make_shared<ByteImage>();
   std::uint64_t panels_posted_ = 0, filled_from_ = 0;  // the latter: a scene
+  Panel filled_;                                       // what a change is told from
 
   // Of the session's thread only.
-  std::unique_ptr<ViewSession> session_;
+  // The scene before stays until there is a picture of the next.
+  std::unique_ptr<ViewSession> session_, before_;
   std::uint64_t scene_ = 0;     // its number
   int width_ = 0, height_ = 0;  // of the window
   bool fresh_step_ = false;     // the last one made a picture

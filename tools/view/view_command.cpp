@@ -53,7 +53,8 @@ class Viewer {
   void drop(const std::vector<std::string>& files);
   void say(const std::string& text, bool error);
   void refuse(const Error& error);
-  void save(const fs::path& output);
+  void save(std::optional<fs::path> output);
+  void tell_last(bool must_succeed);
   fs::path free_name() const;
   double wait_s() const;
   bool frame();  // false: the end
@@ -70,7 +71,8 @@ class Viewer {
   std::unique_ptr<Window> window_;
   std::unique_ptr<SessionThread> session_;  // before the window in destruction
   std::future<OpenedScene> opening_;
-  bool tried_one_ = false;    // scene of the command line
+  bool stands_in_ = false;    // the planet, where what was asked for could not be shown
+  bool sized_ = false;        // the window, for the first scene
   bool scene_given_ = false;  // the session has one, or is about to
   std::string opening_name_;
   Panel panel_;
@@ -165,10 +167,10 @@ void Viewer::drop(const std::vector<std::string>& files) {
 // The scene before stays; where there was none and somebody looks, the planet is there.
 void Viewer::refuse(const Error& error) {
   const bool nothing = !scene_given_ && !opening_.valid();
-  if (nothing && (most_frames_ > 0 || tried_one_)) throw Error(error);
+  if (nothing && (most_frames_ > 0 || stands_in_)) throw Error(error);
   say(error.what(), true);
   if (!nothing) return;
-  tried_one_ = true;
+  stands_in_ = true;
   open({});
 }
 
@@ -179,11 +181,11 @@ void Viewer::take_opened() {
     OpenedScene opened = opening_.get();
     const RenderSettings& settings = opened.scene.render;
     const glm::ivec2 size(settings.width, settings.height);
-    if (!tried_one_ && !options_.render.inputs.empty() && !options_.render.size && size != size_) {
+    if (!sized_ && !options_.render.inputs.empty() && !options_.render.size && size != size_) {
       size_ = size;
       window_->set_size(size_.x, size_.y);
     }
-    tried_one_ = scene_given_ = true;
+    sized_ = scene_given_ = true;
     session_->open(std::move(opened), opening_name_);
     if (!panel_.message_is_error) panel_.message.clear();
   } catch (const Error& error) {
@@ -214,9 +216,11 @@ fs::path Viewer::free_name() const {
   }
 }
 
-// By the offline renderer, with its error line and the scene in it.
-void Viewer::save(const fs::path& output) {
-  session_->ask([this, output, size = size_](ViewSession& session) {
+// By the offline renderer, with its error line and the scene in it; without a name, under the first
+// that is free then.
+void Viewer::save(std::optional<fs::path> name) {
+  session_->ask([this, name, size = size_](ViewSession& session) {
+    const fs::path output = name ? *name : free_name();
     const PictureFormat format = picture_format(output);
     pictures_.check_format(output);
     const OpenedScene seen = session.as_seen(size.x, size.y);
@@ -258,9 +262,10 @@ bool Viewer::frame() {
     panel_.busy = true;
     panel_.scene = "opening";
   }
-  if (input.screenshot) {
+  if (input.screenshot && !session_->has_session()) say("there is nothing to draw yet", true);
+  if (input.screenshot && session_->has_session()) {
     say("drawing the picture at full quality", false);
-    save(free_name());
+    save({});
   }
   if (input.hide) hidden_ = !hidden_;
   panel_.hidden = hidden_;
@@ -279,17 +284,25 @@ void Viewer::run() {
   last_cpu_s_ = thread_cpu_s();
   while (frame()) {
   }
-  session_->wait_until_handled();
-  if (options_.screenshot && session_->has_session()) {
+  tell_last(false);
+  if (options_.screenshot) {
+    if (!session_->has_session())
+      throw Error(
+          {"no picture was drawn", "--screenshot", "a scene", "the end before one was open", ""});
     save(*options_.screenshot);
-    session_->wait_until_handled();
-    for (const SessionThread::News& news : session_->take_news())
-      if (news.error)
-        throw Error(*news.error);
-      else
-        say(news.text, false);
+    tell_last(true);
   }
   report();
+}
+
+// Of what was asked for before the end.
+void Viewer::tell_last(bool must_succeed) {
+  session_->wait_until_handled();
+  session_->check();
+  for (const SessionThread::News& news : session_->take_news()) {
+    if (news.error && must_succeed) throw Error(*news.error);
+    say(news.error ? news.error->what() : news.text, news.error.has_value());
+  }
 }
 
 // Of a run of so many frames that ended at rest.

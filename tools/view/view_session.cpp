@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/gtc/constants.hpp>
+#include <stdexcept>
 
 #include "cli/report.h"
 #include "cli/saved_picture.h"
@@ -73,8 +74,17 @@ ViewSession::ViewSession(OpenedScene opened, int coarse)
     time_ =
         int(std::ranges::find(times_s, opened_.request.volumes[timed_].time_s) - times_s.begin());
   }
-  live_ = std::make_unique<LiveRenderer>(
-      wanted(opened_.request.settings.width, opened_.request.settings.height));
+  make_live(everything(opened_.request.settings.width, opened_.request.settings.height));
+}
+
+void ViewSession::make_live(const RenderRequest& request) {
+  live_ = std::make_unique<LiveRenderer>(request);
+  live_->reuse_pixels(reuse_);
+}
+
+void ViewSession::reuse_pixels(bool reuse) {
+  reuse_ = reuse;
+  live_->reuse_pixels(reuse);
 }
 
 void ViewSession::act(const WindowInput& input, double seconds) {
@@ -95,15 +105,15 @@ LocalAxes ViewSession::axes() const {
   return {axis(frame, 0), axis(frame, 1), axis(frame, 2)};
 }
 
-void ViewSession::apply(const Panel& panel) {
+void ViewSession::apply(const Panel& panel, const Panel& before) {
   if (!panel.changed) return;
   RenderSettings& settings = opened_.request.settings;
-  if (panel.budget_mib != settings.budget_mib) set_budget(panel.budget_mib);
+  if (panel.budget_mib != before.budget_mib) set_budget(panel.budget_mib);
   if (panel.go && panel.go_to)
     flight_.go_to(panel.go_to->latitude_deg, panel.go_to->longitude_deg, panel.go_to->height_m);
-  sun_.apply(panel, axes());
-  if (panel.mode != int(flight_.mode())) flight_.set_mode(FlightMode(panel.mode));
-  if (!exposure_ev_ || panel.exposure_ev != *exposure_ev_) {
+  sun_.apply(panel, before, axes());
+  if (panel.mode != before.mode) flight_.set_mode(FlightMode(panel.mode));
+  if (panel.exposure_ev != before.exposure_ev) {
     exposure_ev_ = panel.exposure_ev;
     exposure_found_ = false;
     show_again_ = true;
@@ -113,21 +123,25 @@ void ViewSession::apply(const Panel& panel) {
   if (panel.fixed_step) settings.step_voxels = panel.step_voxels;
   settings.pixels_per_voxel = panel.pixels_per_voxel;
   for (std::size_t v = 0; v < shown_.size(); ++v) shown_[v] = panel.volumes[v].shown;
-  if (panel.time != time_) set_time(panel.time);
+  if (panel.time != before.time) set_time(panel.time);
   opened_.request.sun = sun_.sun();
 }
 
 // What was read is read again: the memory for it is another, and never both. The old stays where
 // the new is too small.
 void ViewSession::set_budget(double budget_mib) {
-  RenderRequest request = wanted(frame_.width, frame_.height);
+  RenderRequest request = everything(frame_.width, frame_.height);
   request.settings.budget_mib = budget_mib;
   share_budget(budget_mib, gl::sky_lights(request), gl::tells_ice(request));
   live_.reset();
   try {
-    live_ = std::make_unique<LiveRenderer>(request);
-  } catch (const Error&) {  // more than OpenGL gives
-    live_ = std::make_unique<LiveRenderer>(wanted(frame_.width, frame_.height));
+    make_live(request);
+  } catch (const Error& error) {  // more than OpenGL gives
+    try {
+      make_live(everything(frame_.width, frame_.height));
+    } catch (const Error&) {  // no Error: the session is at its end
+      throw std::runtime_error(error.what());
+    }
     throw;
   }
   opened_.request.settings.budget_mib = budget_mib;
@@ -149,12 +163,18 @@ void ViewSession::set_time(int index) {
   if (dated) sun_.follow(utc_of(clock, time_s));
 }
 
-// Of a window of this size, in sides that any coarseness divides.
-RenderRequest ViewSession::wanted(int width, int height) const {
+// Of a window of this size, in sides that any coarseness divides; all volumes, shown or not: what
+// is made for fewer cannot show the others later.
+RenderRequest ViewSession::everything(int width, int height) const {
   RenderRequest request = opened_.request;
   request.camera = flight_.camera();
   request.settings.width = std::max(width / kCoarsest, 1) * kCoarsest;
   request.settings.height = std::max(height / kCoarsest, 1) * kCoarsest;
+  return request;
+}
+
+RenderRequest ViewSession::wanted(int width, int height) const {
+  RenderRequest request = everything(width, height);
   std::vector<RenderVolume> volumes;
   for (std::size_t v = 0; v < shown_.size(); ++v)
     if (shown_[v]) volumes.push_back(request.volumes[v]);

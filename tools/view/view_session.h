@@ -24,8 +24,9 @@ class ViewSession {
   // What the user did, and what he changed in the panel that fill() was called for; throws Error
   // where that cannot be, and nothing else of it counts then.
   void act(const WindowInput& input, double seconds);
-  void apply(const Panel& panel);
-  void reuse_pixels(bool reuse) { live_->reuse_pixels(reuse); }
+  // `before`: what it was when the user changed it; what he left alone may be of an earlier step.
+  void apply(const Panel& panel, const Panel& before);
+  void reuse_pixels(bool reuse);
   void set_camera(const Camera& camera);  // replayed
   // One step of streaming, and a new picture where there is one. True where it is new.
   bool advance(int width, int height);
@@ -45,7 +46,9 @@ class ViewSession {
   OpenedScene as_seen(int width, int height) const;
 
  private:
+  RenderRequest everything(int width, int height) const;
   RenderRequest wanted(int width, int height) const;
+  void make_live(const RenderRequest& request);
   LocalAxes axes() const;
   void set_time(int index);
   void set_budget(double budget_mib);
@@ -58,6 +61,7 @@ class ViewSession {
   std::size_t timed_ = 0;  // the volume whose times the slider has
   Flight flight_;
   ViewSun sun_;
+  bool reuse_ = true;
   bool fixed_coarse_;
   int coarse_, each_ = 1;     // of the next picture; of the one that is being made
   int slow_ = 0, quick_ = 0;  // frames in a row

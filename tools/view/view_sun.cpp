@@ -75,20 +75,19 @@ void ViewSun::fill(Panel& panel, const LocalAxes& at) const {
   std::snprintf(panel.sun_utc.data(), panel.sun_utc.size(), "%s", utc_text(utc_ns_).c_str());
 }
 
-void ViewSun::apply(const Panel& panel, const LocalAxes& at) {
+void ViewSun::apply(const Panel& panel, const Panel& before, const LocalAxes& at) {
   if (panel.sun_utc_typed) return stand(utc_ns_value(panel.sun_utc.data(), "date of the sun"));
-  if (panel.sun_dated != dated_) {
+  if (panel.sun_dated != before.sun_dated) {
     if (panel.sun_dated) return stand(utc_ns_);
     dated_ = false;
   }
-  if (dated_ && std::abs(panel.sun_hour - hour_of(utc_ns_)) > kMoved_h) {
+  if (dated_ && std::abs(panel.sun_hour - before.sun_hour) > kMoved_h) {
     // Whole minutes, as a slider's pixels are no finer.
     const auto minutes = std::int64_t(std::llround(60 * panel.sun_hour));
     return stand(utc_ns_ - time_of_day_ns(utc_ns_) + minutes * (kHour_ns / 60));
   }
-  const glm::dvec2 angles = sun_angles_deg(at, sun_.to_sun);
-  if (dated_ || (std::abs(angles.x - panel.sun_azimuth_deg) <= kMoved_deg &&
-                 std::abs(angles.y - panel.sun_elevation_deg) <= kMoved_deg))
+  if (dated_ || (std::abs(before.sun_azimuth_deg - panel.sun_azimuth_deg) <= kMoved_deg &&
+                 std::abs(before.sun_elevation_deg - panel.sun_elevation_deg) <= kMoved_deg))
     return;
   const double a = glm::radians(panel.sun_azimuth_deg), e = glm::radians(panel.sun_elevation_deg);
   sun_.to_sun =

@@ -19,8 +19,8 @@ class ViewSun {
   void follow(std::int64_t utc_ns);
   // `at`: where angles are told.
   void fill(Panel& panel, const LocalAxes& at) const;
-  // Throws Error for a date that is none; nothing is changed then.
-  void apply(const Panel& panel, const LocalAxes& at);
+  // What differs from `before`. Throws Error for a date that is none; nothing is changed then.
+  void apply(const Panel& panel, const Panel& before, const LocalAxes& at);
 
  private:
   void stand(std::int64_t utc_ns);

@@ -20,8 +20,13 @@ bool by_standard_name(const NameRow& row, const FileVariable& variable) {
   return *row.standard_name && lower(variable.text("standard_name")) == row.standard_name;
 }
 
+// Without its group.
+std::string short_name(const FileVariable& variable) {
+  return lower(variable.name.substr(variable.name.rfind('/') + 1));
+}
+
 bool by_name(const NameRow& row, const FileVariable& variable) {
-  return *row.name && lower(variable.name) == row.name;
+  return *row.name && short_name(variable) == row.name;
 }
 
 bool answers(const NameRow& row, const FileVariable& variable) {
@@ -141,6 +146,25 @@ bool is_column(const FileVariable& variable) {
   }
 }
 
+// The first of the file's variables that answer to a row and are usable; null where none is.
+// Refuses a second one in another group: nothing says which is meant.
+template <class Usable>
+const FileVariable* first_of(const DataFile& file, const Names& names, const NameRow& row,
+                             Quantity quantity, const Usable& usable) {
+  const FileVariable* first = nullptr;
+  for (const FileVariable& variable : file.variables()) {
+    if (first && variable.group == first->group) continue;
+    if (!answers(row, variable) || !names.may_be(variable, quantity) || !usable(variable)) continue;
+    if (first)
+      throw Error({"variables of two groups stand for one quantity", file.path(), "one",
+                   first->name + " and " + variable.name,
+                   "say which in a file for --names: " + std::string(word_of(quantity)) + " " +
+                       first->name});
+    first = &variable;
+  }
+  return first;
+}
+
 // One kind of water: a user's variables, which add up; else the first row that has a variable, with
 // the other parts of it.
 void find_kind(const DataFile& file, const Names& names, Quantity quantity, const Accept& accept,
@@ -155,12 +179,10 @@ void find_kind(const DataFile& file, const Names& names, Quantity quantity, cons
   const NameRow* first = nullptr;
   for (const NameRow* row : names.rows(quantity)) {
     if (first && !(first->part && row->part && row->model == first->model)) continue;
-    for (const FileVariable& variable : file.variables())
-      if (answers(*row, variable) && names.may_be(variable, quantity) && usable(variable)) {
-        found.push_back(water_variable(file, variable, quantity, row));
-        first = row;
-        break;
-      }
+    if (const FileVariable* variable = first_of(file, names, *row, quantity, usable)) {
+      found.push_back(water_variable(file, *variable, quantity, row));
+      first = row;
+    }
   }
 }
 
@@ -171,9 +193,7 @@ const FileVariable* find_named(const DataFile& file, Quantity wanted, const Acce
   for (const FileVariable* variable : names.users(wanted))
     if (accept(*variable)) return variable;
   for (const NameRow* row : names.rows(wanted))
-    for (const FileVariable& variable : file.variables())
-      if (answers(*row, variable) && names.may_be(variable, wanted) && accept(variable))
-        return &variable;
+    if (const FileVariable* variable = first_of(file, names, *row, wanted, accept)) return variable;
   return nullptr;
 }
 

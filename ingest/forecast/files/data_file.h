@@ -26,8 +26,9 @@ struct FileAttribute {
 };
 
 struct FileVariable {
-  std::string name;
-  int id = 0;  // its index in variables()
+  std::string name;   // by its path where several groups have one of that name
+  std::string group;  // of NetCDF-4, as a path; "" for the root
+  int id = 0;         // its index in variables()
   bool numeric = true;
   std::size_t value_bytes = 0;  // of one value in the file, unpacked from compression
   std::vector<int> dimensions;  // in the file's order, slowest first

@@ -167,9 +167,10 @@ void NcFile::inquire() {
 // Ancestors first: what the root says of the file comes before what its groups say.
 void NcFile::inquire_group(int group, const std::string& path, Contents& contents) {
   int variables = 0, attributes = 0, dimensions = 0, groups = 0;
-  std::vector<int> ids(NC_MAX_DIMS), below(NC_MAX_DIMS);
   if (const int status = nc_inq(group, nullptr, &variables, &attributes, nullptr))
     refuse(path_, status);
+  if (const int status = nc_inq_dimids(group, &dimensions, nullptr, 0)) refuse(path_, status);
+  std::vector<int> ids(static_cast<std::size_t>(dimensions));  // NC_MAX_DIMS is not kept
   if (const int status = nc_inq_dimids(group, &dimensions, ids.data(), 0)) refuse(path_, status);
   for (int d = 0; d < dimensions; ++d) {
     char name[NC_MAX_NAME + 1] = {};
@@ -183,6 +184,7 @@ void NcFile::inquire_group(int group, const std::string& path, Contents& content
   for (int v = 0; v < variables; ++v) {
     variables_.push_back(inquire_variable(group, v));
     FileVariable& variable = variables_.back();
+    variable.group = path;
     for (int& d : variable.dimensions) d = contents.dimension_of.at(d);
     const int axis = variable.dimensions.size() == 1 ? variable.dimensions[0] : -1;
     const bool named_so = axis >= 0 && contents.dimensions[std::size_t(axis)].name == variable.name;
@@ -193,8 +195,7 @@ void NcFile::inquire_group(int group, const std::string& path, Contents& content
   for (FileAttribute& a : own)
     if (!global_.attribute(a.name)) global_.attributes.push_back(std::move(a));
   if (const int status = nc_inq_grps(group, &groups, nullptr)) refuse(path_, status);
-  below.resize(std::size_t(groups));
-  if (groups == 0) return;
+  std::vector<int> below(static_cast<std::size_t>(groups));
   if (const int status = nc_inq_grps(group, &groups, below.data())) refuse(path_, status);
   for (const int child : below) {
     char name[NC_MAX_NAME + 1] = {};
