@@ -43,6 +43,9 @@ class User {
     }
     XGetWindowAttributes(display_, window_, &attributes_);
   }
+  ~User() { XCloseDisplay(display_); }
+  User(const User&) = delete;
+  User& operator=(const User&) = delete;
 
   void key(const char* name, int held_ms) {
     send_key(KeyPress, name);
