@@ -65,7 +65,8 @@ case $what in
     mkdir heap
     echo "no cloud" > broken.nc
     printf 'P6\n2 1\n255\nabcdef' > bare.ppm
-    begin ball.json
+    # Shares as the machine can bear differ in the last bit of a float: 1 of 255 here and there.
+    begin ball.json --coarse 4
     until_said "at rest: error" 1
     act key h
     sleep 0.5

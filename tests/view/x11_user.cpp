@@ -162,16 +162,21 @@ class User {
             .count());
   }
 
+  template <class Event>
+  void begin(Event& event, int type) {
+    event.type = type;
+    event.display = display_;
+    event.window = window_;
+    event.root = DefaultRootWindow(display_);
+    event.time = now();
+    event.same_screen = True;
+  }
+
   void send_key(int type, const char* name, bool shifted = false) {
     const KeySym symbol = XStringToKeysym(name);
     if (symbol == NoSymbol) fail(std::string("no key ") + name);
     XEvent event{};
-    event.xkey.type = type;
-    event.xkey.display = display_;
-    event.xkey.window = window_;
-    event.xkey.root = DefaultRootWindow(display_);
-    event.xkey.time = now();
-    event.xkey.same_screen = True;
+    begin(event.xkey, type);
     event.xkey.state = shifted ? ShiftMask : 0;
     event.xkey.keycode = XKeysymToKeycode(display_, symbol);
     XSendEvent(display_, window_, True, KeyPressMask | KeyReleaseMask, &event);
@@ -180,14 +185,9 @@ class User {
 
   void send_button(int type, int x, int y) {
     XEvent event{};
-    event.xbutton.type = type;
-    event.xbutton.display = display_;
-    event.xbutton.window = window_;
-    event.xbutton.root = DefaultRootWindow(display_);
-    event.xbutton.time = now();
+    begin(event.xbutton, type);
     event.xbutton.x = x;
     event.xbutton.y = y;
-    event.xbutton.same_screen = True;
     event.xbutton.button = Button1;
     XSendEvent(display_, window_, True, ButtonPressMask | ButtonReleaseMask, &event);
     XSync(display_, False);
