@@ -77,6 +77,85 @@ void fill(const Grid& grid, const Triple& low, const std::array<int, 3>& side, s
         cells[std::size_t((z * grid.size[1] + y) * grid.size[0] + x)] = node;
 }
 
+// Boxes of grid cells without extinction, which may overlap: each as large as it gets by growing
+// from a cell on one side after the other.
+class EmptyBoxes {
+ public:
+  EmptyBoxes(const Grid& grid, const std::vector<NodeRecord>& nodes,
+             const std::vector<std::uint32_t>& cells)
+      : grid_(grid) {
+    for (std::size_t c = 0; c < grid.cells(); ++c)
+      empty_.push_back((nodes[cells[c]].flags & 7u) == NODE_EMPTY);
+  }
+
+  // Enters at most `most` of them in the cells that they fill, by their indices after `first`.
+  std::vector<NodeRecord> enter(std::vector<std::uint32_t>& cells, std::uint32_t first,
+                                std::size_t most) const {
+    std::vector<NodeRecord> records;
+    std::vector<bool> open = empty_;
+    for (std::size_t c = 0; c < open.size() && records.size() < most; ++c) {
+      if (!open[c]) continue;
+      const Box box = grown(c);
+      each(box, [&](std::size_t cell) {
+        if (open[cell]) cells[cell] = first + std::uint32_t(records.size());
+        open[cell] = false;
+        return true;
+      });
+      records.push_back(record(box));
+    }
+    return records;
+  }
+
+ private:
+  struct Box {
+    Triple low, high;  // grid cells, high excluded
+  };
+  // Whether `visit` is true for all cells.
+  template <class Visit>
+  bool each(const Box& box, Visit&& visit) const {
+    for (std::int64_t z = box.low[2]; z < box.high[2]; ++z)
+      for (std::int64_t y = box.low[1]; y < box.high[1]; ++y)
+        for (std::int64_t x = box.low[0]; x < box.high[0]; ++x)
+          if (!visit(std::size_t((z * grid_.size[1] + y) * grid_.size[0] + x))) return false;
+    return true;
+  }
+  Box grown(std::size_t cell) const {
+    const auto at = std::int64_t(cell);
+    Box box;
+    box.low = {at % grid_.size[0], at / grid_.size[0] % grid_.size[1],
+               at / (grid_.size[0] * grid_.size[1])};
+    box.high = {box.low[0] + 1, box.low[1] + 1, box.low[2] + 1};
+    for (bool grows = true; grows;) {
+      grows = false;
+      for (std::size_t side = 0; side < 6; ++side) {
+        const std::size_t a = side / 2;
+        Box slab = box;
+        slab.low[a] = side % 2 ? box.high[a] : box.low[a] - 1;
+        slab.high[a] = slab.low[a] + 1;
+        if (slab.low[a] < 0 || slab.high[a] > grid_.size[a]) continue;
+        if (!each(slab, [&](std::size_t c) { return bool(empty_[c]); })) continue;
+        (side % 2 ? box.high[a] : box.low[a]) += side % 2 ? 1 : -1;
+        grows = true;
+      }
+    }
+    return box;
+  }
+  // Beyond the grid all is empty.
+  NodeRecord record(const Box& box) const {
+    std::array<std::uint32_t, 3> ends{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::uint32_t low = box.low[a] == 0 ? 0 : std::uint32_t(box.low[a]) + 1;
+      const std::uint32_t high =
+          box.high[a] == grid_.size[a] ? EMPTY_BOX_BEYOND : std::uint32_t(box.high[a]) + 1;
+      ends[a] = low | high << 16;
+    }
+    return {ends[0], NODE_EMPTY | EMPTY_BOX, ends[1], std::bit_cast<float>(ends[2])};
+  }
+
+  const Grid& grid_;
+  std::vector<bool> empty_;
+};
+
 }  // namespace
 
 int append_grids(std::vector<NodeRecord>& nodes, const VolumeTree& tree, int first_node) {
@@ -84,6 +163,7 @@ int append_grids(std::vector<NodeRecord>& nodes, const VolumeTree& tree, int fir
   const int roots = info.chart->roots();
   const int first = int(nodes.size());
   nodes.resize(nodes.size() + 2 * std::size_t(roots), NodeRecord{});
+  std::size_t spent = 0;  // bytes
   for (int root = 0; root < roots; ++root) {
     const Grid grid = choose(tree, root);
     std::vector<std::uint32_t> cells((grid.cells() + 3) / 4 * 4, 0);
@@ -96,6 +176,16 @@ int append_grids(std::vector<NodeRecord>& nodes, const VolumeTree& tree, int fir
           side[2] >= grid.side[2])
         fill(grid, low_of(info.lattice, node.key), side,
              std::uint32_t(first_node) + std::uint32_t(n), cells);
+    }
+    if (std::ranges::all_of(grid.size, [](std::int64_t n) { return n < EMPTY_BOX_BEYOND - 1; })) {
+      const std::size_t allowed = 4 * kGridCellsPerNode * tree.nodes.size();
+      const std::size_t most = allowed > 4 * cells.size() + spent
+                                   ? (allowed - 4 * cells.size() - spent) / sizeof(NodeRecord)
+                                   : 0;
+      const auto boxes =
+          EmptyBoxes(grid, nodes, cells).enter(cells, std::uint32_t(nodes.size()), most);
+      nodes.insert(nodes.end(), boxes.begin(), boxes.end());
+      spent += 4 * cells.size() + sizeof(NodeRecord) * boxes.size();
     }
     const std::size_t at = std::size_t(first) + 2 * std::size_t(root);
     nodes[at] = {std::uint32_t(grid.low[0]), std::uint32_t(grid.low[1]), std::uint32_t(grid.low[2]),

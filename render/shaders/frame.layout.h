@@ -54,6 +54,8 @@ struct VolumeData {
 
 // 16 bytes. Inner: first_child. Leaf: lit = its light tile. flags: from bit 0 the kind (NODE_*, 3
 // bits), the axes that its split halves (3), log2 of its sides in finest cells (x, y, z, 5 each).
+// An empty box (EMPTY_BOX) has its ends in place of the other three: for each axis low | high << 16,
+// counted in cells of the grid from 1 at its begin; 0 and EMPTY_BOX_BEYOND are the chart's own.
 struct NodeRecord {
   uint first_child_or_lit;
   uint flags;
@@ -75,8 +77,8 @@ struct LitRecord {
 };
 
 #ifdef __cplusplus
-inline constexpr uint NODE_INNER = 0, NODE_EMPTY = 1, NODE_CONSTANT = 2, NODE_BRICK = 3;
+inline constexpr uint NODE_INNER = 0, NODE_EMPTY = 1, NODE_CONSTANT = 2, NODE_BRICK = 3, EMPTY_BOX = 1u << 21, EMPTY_BOX_BEYOND = 65535;
 }  // namespace nepho
 #else
-const uint NODE_INNER = 0u, NODE_EMPTY = 1u, NODE_CONSTANT = 2u, NODE_BRICK = 3u;
+const uint NODE_INNER = 0u, NODE_EMPTY = 1u, NODE_CONSTANT = 2u, NODE_BRICK = 3u, EMPTY_BOX = 1u << 21, EMPTY_BOX_BEYOND = 65535u;
 #endif

@@ -61,24 +61,37 @@ uvec4 node_at(uint n) { return nodes[n]; }
 
 ivec3 node_sides(uint flags) { return ivec3(flags >> 6 & 31u, flags >> 11 & 31u, flags >> 16 & 31u); }
 
-// The leaf that holds a finest cell of the walk's root.
+// What lies over, under or beside the grid: nothing, as far as the chart reaches.
+uvec4 beyond_grid(ivec3 place, ivec3 size) {
+  const uint all = EMPTY_BOX_BEYOND << 16;
+  uvec4 node = uvec4(all, NODE_EMPTY | EMPTY_BOX, all, all);
+  uvec3 over = uvec3(size + 1) | all;
+  if (place.z >= size.z) node.w = over.z;
+  else if (place.z < 0) node.w = 1u << 16;
+  else if (place.x >= size.x) node.x = over.x;
+  else if (place.x < 0) node.x = 1u << 16;
+  else if (place.y >= size.y) node.z = over.y;
+  else node.z = 1u << 16;
+  return node;
+}
+
+// The leaf that holds a finest cell of the walk's root, or what is empty around it.
 void descend(int volume, inout Walk w, ivec3 cell) {
-  ivec3 period = ivec3(0);
+  ivec3 period = ivec3(0), cells = ivec3(volumes[volume].cells[0], volumes[volume].cells[1], volumes[volume].cells[2]);
 #ifdef NEPHO_BOX
-  ivec3 cells = ivec3(volumes[volume].cells[0], volumes[volume].cells[1], volumes[volume].cells[2]);
   if ((volumes[volume].periodic & 1) != 0) period.x = int(floor(float(cell.x) / float(cells.x))) * cells.x;
   if ((volumes[volume].periodic & 2) != 0) period.y = int(floor(float(cell.y) / float(cells.y))) * cells.y;
 #endif
   ivec3 local = cell - period;
-  uint at = uint(volumes[volume].first_node + w.root);
-  ivec3 place = (local >> ivec3(w.grid_size.w & 31u, w.grid_size.w >> 5 & 31u, w.grid_size.w >> 10 & 31u)) - ivec3(w.grid.xyz);
-  ivec3 size = ivec3(w.grid_size.xyz);
-  if (all(greaterThanEqual(place, ivec3(0))) && all(lessThan(place, size))) {
+  ivec3 grid_side = ivec3(w.grid_size.w & 31u, w.grid_size.w >> 5 & 31u, w.grid_size.w >> 10 & 31u);
+  ivec3 place = (local >> grid_side) - ivec3(w.grid.xyz), size = ivec3(w.grid_size.xyz);
+  ivec3 inside = clamp(place, ivec3(0), size - 1);
+  uvec4 node = beyond_grid(place, size);
+  if (place == inside) {
     int n = (place.z * size.y + place.y) * size.x + place.x;
     uvec4 four = node_at(w.grid.w + uint(n >> 2));
-    at = (n & 2) == 0 ? ((n & 1) == 0 ? four.x : four.y) : (n & 1) == 0 ? four.z : four.w;
+    node = node_at((n & 2) == 0 ? ((n & 1) == 0 ? four.x : four.y) : (n & 1) == 0 ? four.z : four.w);
   }
-  uvec4 node = node_at(at);
   while ((node.y & 7u) == NODE_INNER) {
     ivec3 split = ivec3(node.y >> 3 & 1u, node.y >> 4 & 1u, node.y >> 5 & 1u);
     ivec3 upper = local >> max(node_sides(node.y) - 1, 0) & split;
@@ -86,8 +99,17 @@ void descend(int volume, inout Walk w, ivec3 cell) {
   }
   w.kind = node.y & 7u;
   ivec3 side = node_sides(node.y);
-  w.low = (local >> side << side) + period;
+  w.low = local >> side << side;
   w.high = w.low + (ivec3(1) << side);
+  if ((node.y & EMPTY_BOX) != 0u) {
+    uvec3 ends = node.xzw;
+    ivec3 first = ivec3(ends & 65535u), last = ivec3(ends >> 16), from = ivec3(w.grid.xyz) - 1;
+    ivec3 begin = from + first << grid_side, end = from + last << grid_side;
+    w.low = mix(begin, ivec3(0), equal(first, ivec3(0)));
+    w.high = mix(end, cells, equal(last, ivec3(EMPTY_BOX_BEYOND)));
+  }
+  w.low += period;
+  w.high += period;
   w.per_cell = 8.0 / vec3(w.high - w.low);
   w.constant_per_m = w.kind == NODE_CONSTANT ? uintBitsToFloat(node.z) : 0.0;
   if (w.kind == NODE_BRICK) {
