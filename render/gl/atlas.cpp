@@ -20,6 +20,13 @@ std::uint64_t bytes(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit
          (ice ? bricks * (sizeof(BrickRecord) + sizeof(IceCodes)) + 2 * texels(atlas) : 0);
 }
 
+void set_sampling(GLuint id) {
+  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    glTextureParameteri(id, axis, GL_CLAMP_TO_EDGE);
+}
+
 }  // namespace
 
 std::array<int, 3> atlas_size(std::uint64_t tiles) {
@@ -62,47 +69,52 @@ Texture make_texture_3d(const std::array<int, 3>& size, GLenum format) {
   glCreateTextures(GL_TEXTURE_3D, 1, &id);
   Texture texture(id);
   glTextureStorage3D(id, 1, format, size[0], size[1], size[2]);
-  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-    glTextureParameteri(id, axis, GL_CLAMP_TO_EDGE);
+  set_sampling(id);
   check_errors("3D texture");
   return texture;
 }
 
-void upload_tile(const Texture& atlas, const std::array<int, 3>& size, std::uint64_t tile,
-                 const std::uint16_t* codes) {
-  const auto [x, y, z] = tile_origin(tile, size);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage3D(atlas.id(), 0, x, y, z, kTileSide, kTileSide, kTileSide, GL_RED,
-                      GL_UNSIGNED_SHORT, codes);
+Texture make_brick_atlas(const std::array<int, 3>& size, bool ice) {
+  return make_texture_3d(size, ice ? GL_RG16 : GL_R16);
 }
 
-namespace {
+Texture view_of_ice(const Texture& atlas) {
+  GLuint id = 0;
+  glGenTextures(1, &id);
+  Texture view(id);
+  glTextureView(id, GL_TEXTURE_3D, atlas.id(), GL_RG16, 0, 1, 0, 1);
+  glTextureParameteri(id, GL_TEXTURE_SWIZZLE_R, GL_GREEN);
+  set_sampling(id);
+  check_errors("view of the ice's texture");
+  return view;
+}
 
-// `codes_of`: of a brick, or null for a tile that is left as it is.
-template <class CodesOf>
-Texture upload(const Forest& forest, const std::array<int, 3>& size, CodesOf codes_of) {
-  Texture atlas = make_texture_3d(size, GL_R16);
+std::uint64_t upload_tile(const Texture& atlas, const std::array<int, 3>& size, std::uint64_t tile,
+                          const LeafBrick& brick, bool ice) {
+  const auto [x, y, z] = tile_origin(tile, size);
+  const auto put = [&](GLenum format, const void* texels) {
+    glTextureSubImage3D(atlas.id(), 0, x, y, z, kTileSide, kTileSide, kTileSide, format,
+                        GL_UNSIGNED_SHORT, texels);
+  };
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  if (!ice) {
+    put(GL_RED, brick.codes.data());
+    return sizeof brick.codes;
+  }
+  std::array<std::array<std::uint16_t, 2>, std::tuple_size_v<decltype(brick.codes)>> pairs;
+  for (std::size_t s = 0; s < pairs.size(); ++s)
+    pairs[s] = {brick.codes[s], brick.ice ? brick.ice->codes[s] : std::uint16_t(0)};
+  put(GL_RG, pairs.data());
+  return sizeof pairs;
+}
+
+Texture upload_bricks(const Forest& forest, const std::array<int, 3>& size, bool ice) {
+  Texture atlas = make_brick_atlas(size, ice);
   std::uint64_t tile = 0;
   for (const VolumeTree& tree : forest.volumes)
-    for (const LeafBrick& brick : tree.bricks) {
-      if (const std::uint16_t* codes = codes_of(brick)) upload_tile(atlas, size, tile, codes);
-      ++tile;
-    }
+    for (const LeafBrick& brick : tree.bricks) upload_tile(atlas, size, tile++, brick, ice);
   check_errors("upload of bricks");
   return atlas;
-}
-
-}  // namespace
-
-Texture upload_bricks(const Forest& forest, const std::array<int, 3>& size) {
-  return upload(forest, size, [](const LeafBrick& brick) { return brick.codes.data(); });
-}
-Texture upload_ice(const Forest& forest, const std::array<int, 3>& size) {
-  return upload(forest, size, [](const LeafBrick& brick) {
-    return brick.ice ? brick.ice->codes.data() : nullptr;
-  });
 }
 
 }  // namespace nepho::gl

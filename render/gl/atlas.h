@@ -31,11 +31,14 @@ std::uint64_t bytes_with_ice(std::uint64_t nodes, std::uint64_t bricks, std::uin
 // Linear filter, clamped. Made once: on llvmpipe a change of sampler state compiles anew.
 Texture make_texture_3d(const std::array<int, 3>& size, GLenum format);
 
-// One tile of 9^3 codes of an atlas of GL_R16.
-void upload_tile(const Texture& atlas, const std::array<int, 3>& size, std::uint64_t tile,
-                 const std::uint16_t* codes);
-// The bricks' codes, R16 UNORM; of their ice at the same places, tiles without it are not written.
-Texture upload_bricks(const Forest& forest, const std::array<int, 3>& size);
-Texture upload_ice(const Forest& forest, const std::array<int, 3>& size);
+// Codes of bricks, 16 bits UNORM; with `ice` a second channel beside the first has those of their
+// ice: llvmpipe gathers texels of 32 bits at once and others one by one.
+Texture make_brick_atlas(const std::array<int, 3>& size, bool ice);
+// The ice's channel as the first one of a texture that shares its memory.
+Texture view_of_ice(const Texture& atlas);
+// One tile of an atlas made with the same `ice`. Returns its bytes.
+std::uint64_t upload_tile(const Texture& atlas, const std::array<int, 3>& size, std::uint64_t tile,
+                          const LeafBrick& brick, bool ice);
+Texture upload_bricks(const Forest& forest, const std::array<int, 3>& size, bool ice);
 
 }  // namespace nepho::gl

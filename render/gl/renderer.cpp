@@ -74,7 +74,7 @@ std::string Renderer::defines(bool lit) const {
 void Renderer::upload() {
   atlas_size_ = gl::atlas_size(scene_.bricks.size());
   light_size_ = gl::atlas_size(scene_.lit.size());
-  atlas_ = gl::upload_bricks(forest_, atlas_size_);
+  atlas_ = gl::upload_bricks(forest_, atlas_size_, scene_.has_ice);
   light_atlas_ = gl::make_texture_3d(light_size_, sky_light() ? GL_RGBA16F : GL_R16F);
   frame_ = gl::Buffer(&scene_.frame, sizeof(FrameData));
   volumes_ = gl::Buffer(std::span<const VolumeData>(scene_.volumes));
@@ -91,7 +91,7 @@ void Renderer::upload() {
   glBindTextureUnit(0, atlas_.id());
   glBindTextureUnit(1, light_atlas_.id());
   if (scene_.has_ice) {
-    ice_atlas_ = gl::upload_ice(forest_, atlas_size_);
+    ice_atlas_ = gl::view_of_ice(atlas_);
     glBindTextureUnit(2, ice_atlas_.id());
     ice_ = gl::Buffer(std::span<const BrickRecord>(scene_.ice));
     ice_.bind(8);

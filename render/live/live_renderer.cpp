@@ -45,11 +45,11 @@ class LiveRenderer::Impl {
         sky_(gl::sky_lights(request)),
         ice_(gl::tells_ice(request)),
         slots_(budget_.slots),
-        atlas_(gl::make_texture_3d(budget_.atlas_size, GL_R16)),
+        atlas_(gl::make_brick_atlas(budget_.atlas_size, ice_)),
         light_atlas_(gl::make_texture_3d(budget_.atlas_size, sky_ ? GL_RGBA16F : GL_R16F)),
         light_tiles_(limits.light_tiles),
         worker_(budget_, request.volumes.size()) {
-    if (ice_) ice_atlas_ = gl::make_texture_3d(budget_.atlas_size, GL_R16);
+    if (ice_) ice_atlas_ = gl::view_of_ice(atlas_);
     set(request);
   }
 
@@ -210,12 +210,7 @@ bool LiveRenderer::Impl::upload_some() {
     const LeafBrick* brick = leaves[next.uploaded].brick;
     const std::uint32_t slot = next.tree->slot(next.uploaded);
     if (!brick || slots_[slot].has_brick) continue;
-    gl::upload_tile(atlas_, budget_.atlas_size, slot, brick->codes.data());
-    bytes += sizeof brick->codes;
-    if (brick->ice) {
-      gl::upload_tile(ice_atlas_, budget_.atlas_size, slot, brick->ice->codes.data());
-      bytes += sizeof brick->ice->codes;
-    }
+    bytes += gl::upload_tile(atlas_, budget_.atlas_size, slot, *brick, ice_);
     slots_[slot].has_brick = true;
     ++counts_.bricks_uploaded;
   }
