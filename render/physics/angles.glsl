@@ -23,17 +23,13 @@ void sin_cos_small(Number angle, OUT(Number) s, OUT(Number) c) {
   c = Number(1.0) - Number(2.0) * sin_x * sin_x;
 }
 
-// The angle of the point (x, y), in (-pi, pi]; 0 at the origin. Quotient folded to |t| <=
-// tan(pi/8), then the interpolant of atan(t) / t at Chebyshev nodes in t^2 (9e-11). Relative error
-// 3e-7.
-Number arc_tangent(Number y, Number x) {
-  Number a = abs(y);
-  Number b = abs(x);
-  Number large = max(a, b);
-  if (!(large > Number(0.0))) return Number(0.0);
-  Number t = min(a, b) / large;
-  bool steep = t > Number(0.41421356237309504880);
-  if (steep) t = (t - Number(1.0)) / (t + Number(1.0));
+// tan(pi / 8): where the angle's quotient is folded.
+Number steep_tangent() {
+  return Number(0.41421356237309504880);
+}
+// pi / 4, where it was folded, and the arc tangent of |t| <= tan(pi/8): the interpolant of atan(t) / t
+// at Chebyshev nodes in t^2 (9e-11).
+Number folded_angle(Number t, bool folded) {
   Number z = t * t;
   Number p = Number(-0.0862467614) + z * Number(0.0504813851);
   p = Number(0.1107136502) + z * p;
@@ -41,8 +37,33 @@ Number arc_tangent(Number y, Number x) {
   p = Number(0.1999997726) + z * p;
   p = Number(-0.3333333328) + z * p;
   Number angle = t + t * z * p;
-  if (steep) angle = angle + Number(0.25) * pi;
+  return folded ? angle + Number(0.25) * pi : angle;
+}
+
+// The angle of the point (x, y), in (-pi, pi]; 0 at the origin. One division: of what is folded, not
+// of the fold. Relative error 3e-7.
+Number arc_tangent(Number y, Number x) {
+  Number a = abs(y);
+  Number b = abs(x);
+  Number large = max(a, b);
+  Number small = min(a, b);
+  if (!(large > Number(0.0))) return Number(0.0);
+  bool steep = small > steep_tangent() * large;
+  Number angle = folded_angle((steep ? small - large : small) / (steep ? small + large : large), steep);
   if (a > b) angle = Number(0.5) * pi - angle;
   if (x < Number(0.0)) angle = pi - angle;
   return y < Number(0.0) ? -angle : angle;
+}
+// The same of lengths.
+Number angle_of_point(Length y, Length x) {
+  Length a = abs(y);
+  Length b = abs(x);
+  Length large = max(a, b);
+  Length small = min(a, b);
+  if (!(large > Length(0.0))) return Number(0.0);
+  bool steep = small > steep_tangent() * large;
+  Number angle = folded_angle((steep ? small - large : small) / (steep ? small + large : large), steep);
+  if (a > b) angle = Number(0.5) * pi - angle;
+  if (x < Length(0.0)) angle = pi - angle;
+  return y < Length(0.0) ? -angle : angle;
 }

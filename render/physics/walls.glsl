@@ -90,6 +90,39 @@ void sphere_wall_distances(Length radius, Length above, Number cos_zenith, OUT(L
   second = max(q, other);
 }
 
+// The wall ahead of a ray between two spheres that lie `above_low` and `above_high` below the camera
+// (that over it: negative): the lower one if the ray falls and meets it, else the upper one's far
+// side; `lower` tells which. The sphere that the ray goes for is met as above. Where a ray misses the
+// lower one, its discriminant grows by the difference of their squared radii, a sum without
+// cancellation: heights are then as good as a float of the layer's thickness.
+void layer_wall_distance(Length radius, Length above_low, Length above_high, Number cos_zenith,
+                         bool falls, OUT(Length) distance, OUT(bool) lower) {
+  PRECISE Length b = radius * cos_zenith;
+  PRECISE Length above = falls ? above_low : above_high;
+  PRECISE Length sum = Number(2.0) * radius - above;
+  Area c;
+  Area c_error;
+  Area b_squared;
+  Area b_error;
+  dekker_product(above, sum, c, c_error);
+  dekker_product(b, b, b_squared, b_error);
+  PRECISE Area coarse = b_squared - c;
+  PRECISE Area fine = b_error - c_error;
+  PRECISE Area discriminant = coarse + fine;
+  lower = falls && !(discriminant < Area(0.0));
+  if (falls && !lower) {
+    Area wider = (above_low - above_high) * (Number(2.0) * radius - above_low - above_high);
+    discriminant = discriminant + wider;
+    c = c - wider;
+  }
+  distance = no_hit();
+  if (discriminant < Area(0.0)) return;
+  Length root = sqrt(discriminant);
+  Length q = b < Length(0.0) ? root - b : -(b + root);
+  Length other = q == Length(0.0) ? Length(0.0) : c / q;
+  distance = lower ? min(q, other) : max(q, other);
+}
+
 // Box: what box_wall_distance takes. A ray along the wall never meets it.
 Length box_spacing_over_direction(Length spacing, Number direction) {
   return direction == Number(0.0) ? no_hit() : spacing / direction;
@@ -104,6 +137,15 @@ Length box_wall_distance(int wall, int nearest, Number offset_cells,
 // Angle around a wall's axis that the ray has swept after t: the inverse of angular_wall_distance.
 // Relative error 3e-7 * kappa.
 Number angle_along_ray(Length radius, Length t, Number radial, Number tangential) {
-  Number s = t / radius;
-  return arc_tangent(s * tangential, Number(1.0) + s * radial);
+  return angle_of_point(t * tangential, radius + t * radial);
+}
+
+// How fast it grows there: `turn` to first order of what t grows by, and -turn * fade to second.
+void angle_growth_along_ray(Length radius, Length t, Number radial, Number tangential,
+                            OUT(InverseLength) turn, OUT(InverseLength) fade) {
+  Length along = radius + t * radial;
+  Length across = t * tangential;
+  Area squared = along * along + across * across;
+  turn = radius * tangential / squared;
+  fade = (radial * along + tangential * across) / squared;
 }

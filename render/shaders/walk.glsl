@@ -168,19 +168,23 @@ vec3 leaf_cells_at(int volume, Walk w, float t_m) {
 #endif
 }
 
-// Before places in the leaf are asked for, between two distances. A parabola through three of them
-// stands for the curved coordinates: 0.2 angle^2 of a cell off, for a leaf that wide in rad (the third
-// derivatives of angle and height along a ray, times u (u - 1/2) (u - 1) / 6).
+// Before places in the leaf are asked for, between two distances. The parabola that touches the curved
+// coordinates half-way stands for them: 0.52 angle^2 of a cell off, for a leaf that wide in rad (the
+// third derivatives of angle and height along a ray, times (1/2)^3 / 6).
 void begin_leaf_segment(int volume, inout Walk w, float begin_m, float end_m) {
 #ifdef NEPHO_LEAF_PARABOLA
-  float length_m = max(end_m - begin_m, 1e-3);
-  vec3 a = curved_leaf_cells_at(volume, w, begin_m);
-  vec3 b = curved_leaf_cells_at(volume, w, begin_m + 0.5 * length_m);
-  vec3 c = curved_leaf_cells_at(volume, w, begin_m + length_m);
-  w.segment_m = begin_m;
-  w.place = a;
-  w.place_rise = (4.0 * b - 3.0 * a - c) / length_m;
-  w.place_bend = 2.0 * (a - 2.0 * b + c) / (length_m * length_m);
+  w.segment_m = 0.5 * (begin_m + end_m);
+  w.place = curved_leaf_cells_at(volume, w, w.segment_m);
+#ifdef NEPHO_SHELL
+  if (is_shell(volume)) {
+    shell_cells_growth(volume, w, w.segment_m, w.place_rise, w.place_bend);
+    w.place_rise *= w.per_cell;
+    w.place_bend *= w.per_cell;
+    return;
+  }
+#endif
+  w.place_rise = w.slope * w.per_cell;
+  w.place_bend = vec3(0.0);
 #endif
 }
 

@@ -101,6 +101,23 @@ vec3 shell_cells_at(int volume, Walk w, float t_m) {
                        height_along_ray(w.radius.z, t, w.radial.z) * per_m);
 }
 
+// To first and second order of the metres from t_m on.
+void shell_cells_growth(int volume, Walk w, float t_m, out vec3 rise, out vec3 bend) {
+  float t = (t_m - w.anchor_m) * w.stretch;
+  for (int a = 0; a < 2; ++a) {
+    float turn, fade;
+    angle_growth_along_ray(w.radius[a], t, w.radial[a], w.slope[a], turn, fade);
+    rise[a] = turn * shell_floats[volume].per_cell_rad;
+    bend[a] = -rise[a] * fade;
+  }
+  float r = w.radius.z + height_along_ray(w.radius.z, t, w.radial.z);
+  float mu = (w.radius.z * w.radial.z + t) / r;
+  rise.z = mu * shell_floats[volume].per_cell_height_m;
+  bend.z = 0.5 * max(1.0 - mu * mu, 0.0) / r * shell_floats[volume].per_cell_height_m;
+  rise *= w.stretch;
+  bend *= w.stretch * w.stretch;
+}
+
 void shell_next_wall(int volume, Walk w, ivec3 low, ivec3 high, float t_m, out float wall_m,
                      out int axis, out bool up) {
   wall_m = FAR;
@@ -121,22 +138,15 @@ void shell_next_wall(int volume, Walk w, ivec3 low, ivec3 high, float t_m, out f
       up = rises;
     }
   }
-  float cell_height = shell_floats[volume].cell_height_m, near, far;
-  bool falls = now < -w.radius.z * w.radial.z;
-  if (falls) {
-    sphere_wall_distances(w.radius.z, -wall_offset(low.z, w.index.z, w.rest.z, cell_height),
-                          w.radial.z, near, far);
-    falls = near < no_hit();
-  }
-  if (!falls) {
-    sphere_wall_distances(w.radius.z, -wall_offset(high.z, w.index.z, w.rest.z, cell_height),
-                          w.radial.z, near, far);
-    near = far;
-  }
-  if (near < wall_m) {
-    wall_m = near;
+  float cell_height = shell_floats[volume].cell_height_m, layer;
+  bool lower;
+  layer_wall_distance(w.radius.z, -wall_offset(low.z, w.index.z, w.rest.z, cell_height),
+                      -wall_offset(high.z, w.index.z, w.rest.z, cell_height), w.radial.z,
+                      now < -w.radius.z * w.radial.z, layer, lower);
+  if (layer < wall_m) {
+    wall_m = layer;
     axis = 2;
-    up = !falls;
+    up = !lower;
   }
   wall_m = wall_m >= FAR ? FAR : max(w.anchor_m + wall_m * per_stretch, t_m);
 }
