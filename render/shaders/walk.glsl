@@ -44,7 +44,7 @@ struct Walk {
   bool endless;      // level, and out of wraps
 };
 
-// OUTSIDE and CROSSING: at leave_m the walk goes on in another frame (enter_chart).
+// OUTSIDE and CROSSING: at leave_m the walk goes on in another frame, or through the planet (enter_chart).
 const uint OUTSIDE = 4u, GONE = 5u, CROSSING = 6u;
 
 // The ray of this invocation, world metres.
@@ -219,6 +219,13 @@ void enter_chart(int volume, inout Walk w) {
   bool crosses = w.kind == CROSSING;
 #ifdef NEPHO_SHELL
   int layer = w.low.z;
+  if (is_shell(volume) && crosses) {
+    if (w.leave_axis == 2) {
+      shell_reenter(volume, w);
+      return;
+    }
+    shell_cross_face(w);
+  }
   if (is_shell(volume)) shell_set_face(volume, w, crosses ? w.root : shell_face_at(volume, w, t_m));
 #endif
   w.grid = node_at(uint(volumes[volume].first_grid + 2 * w.root));
@@ -253,24 +260,23 @@ void next_leaf(int volume, inout Walk w) {
   }
   int at = w.leave_axis == 0 ? cell.x : w.leave_axis == 1 ? cell.y : cell.z;
   if (at < 0 || at >= count) {
+    bool inside = false;
+#ifdef NEPHO_BOX
     bool wraps = (volumes[volume].periodic >> max(w.leave_axis, 0) & 1) != 0;
-    bool inside = wraps && ++w.wraps < MAX_WRAPS;
-#if defined(NEPHO_BOX) && !defined(NEPHO_LIT)
+    inside = wraps && ++w.wraps < MAX_WRAPS;
+#ifndef NEPHO_LIT
     if (wraps && w.wraps >= MAX_LEVEL_WRAPS && box_is_level(w)) {
       inside = false;
       w.endless = true;
     }
 #endif
+#endif
 #ifdef NEPHO_SHELL
-    if (is_shell(volume) && !gone) {
-      if (w.leave_axis < 2) {
-        shell_cross_face(w, cell.z);
-        return;
-      }
-      if (!w.leave_up) {
-        shell_reenter(volume, w);
-        return;
-      }
+    // Onto another face, or through the bottom.
+    if (is_shell(volume) && !gone && (w.leave_axis < 2 || !w.leave_up)) {
+      w.low.z = cell.z;
+      w.kind = CROSSING;
+      return;
     }
 #endif
     gone = gone || !inside;

@@ -151,8 +151,8 @@ void shell_next_wall(int volume, Walk w, ivec3 low, ivec3 high, float t_m, out f
   wall_m = wall_m >= FAR ? FAR : max(w.anchor_m + wall_m * per_stretch, t_m);
 }
 
-// Behind a wall u or v at a face's end lies another face: enter_chart goes on there, in layer k.
-void shell_cross_face(inout Walk w, int k) {
+// Behind a wall u or v at a face's end lies another face.
+void shell_cross_face(inout Walk w) {
   bool u = w.leave_axis == 0;
   int axis = u ? FACE_U[w.root] : FACE_V[w.root];
   float side = (u ? FACE_U_SIGN[w.root] : FACE_V_SIGN[w.root]) * (w.leave_up ? 1.0 : -1.0);
@@ -160,9 +160,6 @@ void shell_cross_face(inout Walk w, int k) {
   side = -side;
 #endif
   w.root = 2 * axis + (side < 0.0 ? 1 : 0);
-  w.low.z = k;
-  w.kind = CROSSING;
-  w.leave_axis = -1;
 }
 
 // Through the bottom: the shell is met again on the far side, unless the ground is in the way.
