@@ -86,8 +86,7 @@ ChartRay::Start ShellRay::start(double t_max_m) const {
   s.t_m = std::max(0.0, top->first);
   s.end_m = std::min(t_max_m, top->second);
   if (glm::length(origin_) < radius_m(0))
-    if (const auto bottom = chords_.with(radius_m(0)))
-      s.t_m = std::max(s.t_m, bottom->second);
+    if (const auto bottom = chords_.with(radius_m(0))) s.t_m = std::max(s.t_m, bottom->second);
   if (s.end_m > s.t_m) enter(s.t_m, s.root, s.cell);
   return s;
 }
