@@ -73,6 +73,18 @@ HatLine hat_line(std::uint32_t index, std::uint32_t cells) {
   return line;
 }
 
+// The lines of a node's 9 x 9 columns are asked for again and again, and tangents are dear.
+const HatLine& remembered_hat_line(std::uint32_t index, std::uint32_t cells) {
+  struct Known {
+    std::uint32_t index = 0, cells = 0;
+    HatLine line;
+  };
+  static thread_local std::array<Known, 32> all;
+  Known& known = all[index % all.size()];
+  if (known.index != index || known.cells != cells) known = {index, cells, hat_line(index, cells)};
+  return known.line;
+}
+
 }  // namespace
 
 double equiangular(double s) {
@@ -144,7 +156,8 @@ ColumnNames ShellChart::names(Column column, const Index3& cells) const {
 }
 
 double ShellChart::hat_horizontal(Column column, const Index3& cells) const {
-  const HatLine u = hat_line(column.i, cells[0]), v = hat_line(column.j, cells[1]);
+  const HatLine u = remembered_hat_line(column.i, cells[0]);
+  const HatLine& v = remembered_hat_line(column.j, cells[1]);
   double sum = 0;
   for (int a = 0; a < u.size; ++a)
     for (int b = 0; b < v.size; ++b) {

@@ -170,6 +170,31 @@ void refine(const Lattice& lattice, NodeKey node, const double* samples, NodeKey
   }
 }
 
+std::pair<double, double> range_around(const Lattice& lattice, NodeKey node, const double* samples,
+                                       NodeKey descendant) {
+  std::array<std::size_t, 3> first, last;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::uint64_t ratio =
+        lattice.cells(descendant.level())[a] / lattice.cells(node.level())[a];
+    const std::uint64_t fine =
+        std::uint64_t{kBrickCells} * (descendant.ijk()[a] - node.ijk()[a] * ratio);
+    const auto cell = [&](std::uint64_t s) {
+      return std::size_t(std::min<std::uint64_t>(s / ratio, kBrickCells - 1));
+    };
+    first[a] = cell(fine);
+    last[a] = cell(fine + kBrickCells) + 1;
+  }
+  double least = samples[first[0] + first[1] * kStride[1] + first[2] * kStride[2]], most = least;
+  for (std::size_t k = first[2]; k <= last[2]; ++k)
+    for (std::size_t j = first[1]; j <= last[1]; ++j)
+      for (std::size_t i = first[0]; i <= last[0]; ++i) {
+        const double c = samples[i + j * kStride[1] + k * kStride[2]];
+        least = c < least ? c : least;
+        most = c > most ? c : most;
+      }
+  return {least, most};
+}
+
 double greatest_gap(const BrickSamples& own, const BrickSamples& low, const BrickSamples& high) {
   // One maximum per column of the brick: independent, so that they run side by side.
   std::array<double, kBrickSamples * kBrickSamples> worst{};

@@ -34,6 +34,10 @@ void add_child(const double* samples, const float* variance, const HatWeights& h
 void refine(const Lattice& lattice, NodeKey node, const double* samples, NodeKey descendant,
             double* refined);
 
+// The least and the greatest of the samples that refine() would look at.
+std::pair<double, double> range_around(const Lattice& lattice, NodeKey node, const double* samples,
+                                       NodeKey descendant);
+
 // How far `own` is outside [low, high] at the worst sample; 0 where it is within.
 double greatest_gap(const BrickSamples& own, const BrickSamples& low, const BrickSamples& high);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -199,13 +200,21 @@ struct SparsePyramid::Impl {
       for (std::uint32_t j = 0; j < kBrickSamples; ++j)
         for (std::uint32_t i = 0; i < kBrickSamples; ++i) {
           const std::uint32_t own = i + kBrickSamples * (j + kBrickSamples * k);
+          const double volume = hats.horizontal[i + kBrickSamples * j] * hats.vertical[k];
+          const auto within = [](std::uint32_t s) { return s > 0 && s < kBrickCells; };
+          if (within(i) && within(j) && within(k)) {  // of no other node
+            double& sum = (*level.samples[node])[own];
+            float& square = (*level.variances[node])[own];
+            sum = sum / volume * NEPHO_MUTATION_DRIFT;
+            square = float(double(square) / volume);
+            continue;
+          }
           TouchList places = touching.places({i, j, k});
           if (NEPHO_MUTATION_SEAM) places.keep([&](const Touch& p) { return p.node == node; });
           // A periodic axis one node long holds a sample twice.
           const auto first =
               std::ranges::find_if(places, [](const Touch& p) { return p.node.has_value(); });
           if (first->node != node || first->offset != own) continue;
-          const double volume = hats.horizontal[i + kBrickSamples * j] * hats.vertical[k];
           const auto [mean, square] = merged(level, places, volume, closed);
           for (const Touch& place : places) {
             if (!place.node) continue;
@@ -313,26 +322,24 @@ struct SparsePyramid::Impl {
   // The difference of two nested trilinear fields is greatest at a finest sample: exact. Each node
   // that ends a branch (finest, or a closed form) is held against all its ancestors.
   void bound_errors() {
-    for (int l = 0; l < lattice.max_level(); ++l) {
-      const std::size_t ancestors = std::size_t(l) + 1, count = at(l).keys.size();
-      std::vector<double> worst(count * ancestors, 0.0);
-      parallel(count,
-               [&](std::size_t node) { compare_ends(at(l).keys[node], &worst[node * ancestors]); });
-      for (std::size_t node = 0; node < count; ++node) {
-        NodeKey key = at(l).keys[node];
-        for (int a = l; a >= 0; --a) {
-          double& error = at(a).records[*at(a).find(key)].error;
-          error = std::max(error, worst[node * ancestors + std::size_t(a)]);
-          if (a > 0) key = lattice.parent(key);
-        }
-      }
-    }
+    for (int l = 0; l < lattice.max_level(); ++l)
+      parallel(at(l).keys.size(), [&](std::size_t node) { compare_ends(at(l).keys[node]); });
   }
 
-  void compare_ends(NodeKey key, double* worst) const {
-    std::vector<std::pair<NodeKey, const double*>> ancestors;  // itself first
+  void compare_ends(NodeKey key) {
+    struct Ancestor {
+      NodeKey key;
+      const double* samples;
+      std::atomic_ref<double> error;  // which others raise at the same time
+      void raise(double to) const {
+        for (double now = error; now < to && !error.compare_exchange_weak(now, to);) continue;
+      }
+    };
+    std::vector<Ancestor> ancestors;  // itself first
     for (NodeKey a = key;; a = lattice.parent(a)) {
-      ancestors.emplace_back(a, at(a.level()).at(*at(a.level()).find(a)));
+      Level& level = at(a.level());
+      const std::size_t node = *level.find(a);
+      ancestors.push_back({a, level.at(node), std::atomic_ref(level.records[node].error)});
       if (a.level() == 0) break;
     }
     for (const NodeKey child : lattice.children(key)) {
@@ -347,11 +354,16 @@ struct SparsePyramid::Impl {
         low.fill(r.block ? std::min(r.value, r.outside) : r.value);
         high.fill(r.block ? std::max(r.value, r.outside) : r.value);
       }
-      for (const auto& [ancestor, samples] : ancestors) {
+      const double most_low = *std::ranges::max_element(low),
+                   least_high = *std::ranges::min_element(high);
+      for (const Ancestor& ancestor : ancestors) {
+        // Its field lies between its samples there, but for rounding: most often no gap can be
+        // greater than one that is known.
+        const auto [least, most] = range_around(lattice, ancestor.key, ancestor.samples, child);
+        if (std::max(most_low - least, most - least_high) * (1 + 1e-12) <= ancestor.error) continue;
         BrickSamples own;
-        refine(lattice, ancestor, samples, child, own.data());
-        double& most = worst[ancestor.level()];
-        most = std::max(most, greatest_gap(own, low, high));
+        refine(lattice, ancestor.key, ancestor.samples, child, own.data());
+        ancestor.raise(greatest_gap(own, low, high));
       }
     }
   }

@@ -54,7 +54,9 @@ double AirPath::rise_m(double height_m) const {
 
 std::vector<double> AirPath::cuts(double u0_m, double u1_m,
                                   const std::vector<double>& heights_m) const {
-  std::vector<double> cuts{u0_m};
+  std::vector<double> cuts;
+  cuts.reserve(2 * heights_m.size() + 3);
+  cuts.push_back(u0_m);
   const auto add = [&](double u_m) {
     if (u_m > cuts.back() && u_m < u1_m) cuts.push_back(u_m);
   };

@@ -69,6 +69,8 @@ class Solver {
         fields_(kSuns * kHeights) {
     bundles_.resize(kHeights);
     kept_.resize(kHeights);
+    for (std::size_t a = 0; a < kAzimuths; ++a)
+      azimuth_cosine_[a] = std::cos(pi * (double(a) + 0.5) / kAzimuths);
     cuts_m_ = {0,
                air.aerosol_scale_m,
                air.rayleigh_scale_m / 2,
@@ -83,10 +85,10 @@ class Solver {
   void run() {
     make_depth();
     tbb::parallel_for(0, kHeights, [&](int row) { make_bundles(row); });
-    const Fields first = order(&Solver::sunlit, &Solver::sunlit_ground, f64::night_sky);
+    const Fields first = order<Sunlit>();
     fields_ = first;
     set_light();
-    const Fields second = order(&Solver::relit, &Solver::relit_ground, 0);
+    const Fields second = order<Relit>();
     for (std::size_t f = 0; f < fields_.size(); ++f)
       fields_[f] = closed(first[f], second[f], kept_[f / kSuns]);
     set_light();
@@ -97,13 +99,6 @@ class Solver {
   }
 
  private:
-  struct Place {  // of a sample under one sun
-    const Sample& sample;
-    double mu_sun, one_minus_cos;
-  };
-  using SampleLight = glm::dvec3 (Solver::*)(const Place&) const;
-  using GroundLight = glm::dvec3 (Solver::*)(double mu_sun) const;
-
   void make_depth() {
     AirTable& table = tables_.depth;
     table = {kDepthWidth, kDepthHeight, {}};
@@ -178,19 +173,8 @@ class Solver {
     const double part = f64::sun_above_horizon(radius_m_, height_m, mu_sun);
     return part > 0 ? part * glm::exp(-lookup_.depth(height_m, mu_sun)) : glm::dvec3{0.0};
   }
-  glm::dvec3 sunlit(const Place& at) const {
-    const double g = air_.aerosol_asymmetry;
-    return sun(at.sample.height_m, at.mu_sun) *
-           (f64::rayleigh_phase(at.one_minus_cos) * at.sample.rayleigh +
-            f64::cornette_shanks_phase(at.one_minus_cos, g) * at.sample.aerosol);
-  }
   glm::dvec3 sunlit_ground(double mu_sun) const {
     return mu_sun > 0 ? mu_sun * albedo_ / pi * sun(0, mu_sun) : glm::dvec3{0.0};
-  }
-  glm::dvec3 relit(const Place& at) const {
-    const AirLight light = lookup_.light(at.sample.height_m, at.mu_sun);
-    return (light.multiple + at.sample.p2 * light.multiple_p2) * at.sample.rayleigh +
-           light.multiple * at.sample.aerosol;
   }
   glm::dvec3 relit_ground(double mu_sun) const {
     double x = 0, y = 0;
@@ -201,44 +185,116 @@ class Solver {
     return albedo_ / pi * (a + (place - double(i)) * (b - a));
   }
 
-  Fields order(SampleLight light, GroundLight ground, double night) const {
+  // One sample as the sun itself lights it.
+  class Sunlit {
+   public:
+    static double night() { return f64::night_sky; }
+    Sunlit(const Solver& solver, const Sample& sample) : solver_(solver), sample_(sample) {
+      // Sines of the sun's elevation between which its disc is cut, and a little more.
+      const double up_m = std::max(sample.height_m, 0.0);
+      const double dip =
+          std::atan(std::sqrt(up_m * (2 * solver.radius_m_ + up_m)) / solver.radius_m_);
+      dark_ = std::sin(-dip - kDisc_rad);
+      bright_ = std::sin(-dip + kDisc_rad);
+    }
+    // `rayleigh`, `aerosol`: phase functions, 1/sr.
+    glm::dvec3 operator()(double mu_sun, double rayleigh, double aerosol) const {
+      if (mu_sun < dark_) return glm::dvec3{0.0};
+      const glm::dvec3 sun = mu_sun > bright_
+                                 ? glm::exp(-solver_.lookup_.depth(sample_.height_m, mu_sun))
+                                 : solver_.sun(sample_.height_m, mu_sun);
+      return sun * (rayleigh * sample_.rayleigh + aerosol * sample_.aerosol);
+    }
+    static glm::dvec3 ground(const Solver& solver, double mu_sun) {
+      return solver.sunlit_ground(mu_sun);
+    }
+
+   private:
+    static constexpr double kDisc_rad = 0.005;
+    const Solver& solver_;
+    const Sample& sample_;
+    double dark_, bright_;
+  };
+  // The same as the light of the tables lights it.
+  class Relit {
+   public:
+    static double night() { return 0; }
+    Relit(const Solver& solver, const Sample& sample)
+        : sample_(sample), row_(solver.lookup_.light_row(sample.height_m)) {}
+    glm::dvec3 operator()(double mu_sun, double, double) const {
+      const AirLight light = row_(mu_sun);
+      return (light.multiple + sample_.p2 * light.multiple_p2) * sample_.rayleigh +
+             light.multiple * sample_.aerosol;
+    }
+    static glm::dvec3 ground(const Solver& solver, double mu_sun) {
+      return solver.relit_ground(mu_sun);
+    }
+
+   private:
+    const Sample& sample_;
+    AirLightRow row_;
+  };
+
+  template <class Light>
+  Fields order() const {
     Fields fields(kSuns * kHeights);
-    tbb::parallel_for(0, kHeights, [&](int row) {
-      for (int sun = 0; sun < kSuns; ++sun)
-        fields[std::size_t(row * kSuns + sun)] = field(row, sun, light, ground, night);
-    });
+    tbb::parallel_for(0, kHeights,
+                      [&](int row) { add_row<Light>(row, &fields[std::size_t(row * kSuns)]); });
     return fields;
   }
 
-  Field field(int row, int sun, SampleLight light, GroundLight ground, double night) const {
-    double height_m = 0, mu_sun = 0;
-    f64::air_light_place(air_.top_m, sun / (kSuns - 1.0), row / (kHeights - 1.0), height_m, mu_sun);
-    const double r_m = radius_m_ + height_m;
-    const double sun_sine = std::sqrt(std::max(0.0, (1 - mu_sun) * (1 + mu_sun)));
-    Field field;
+  // Sample by sample, each for all suns and azimuths.
+  template <class Light>
+  void add_row(int row, Field* fields) const {
+    const double r_m = radius_m_ + row_height_m(row), g = air_.aerosol_asymmetry;
+    std::array<double, kSuns> mu_sun{};
+    for (int sun = 0; sun < kSuns; ++sun) {
+      double height_m = 0;
+      f64::air_light_place(air_.top_m, sun / (kSuns - 1.0), row / (kHeights - 1.0), height_m,
+                           mu_sun[std::size_t(sun)]);
+    }
+    struct Way {  // to one sun, one azimuth off
+      double cosine, rayleigh, aerosol;
+    };
+    std::array<std::array<Way, kAzimuths>, kSuns> ways;
     std::array<double, kBands> weights{};
     for (const Bundle& bundle : bundles_[std::size_t(row)]) {
       const double sine = std::sqrt((1 - bundle.mu) * (1 + bundle.mu));
-      glm::dvec3 radiance = kAzimuths * night * bundle.space;
-      for (int a = 0; a < kAzimuths; ++a) {
-        const double cosine =
-            bundle.mu * mu_sun + sine * sun_sine * std::cos(pi * (a + 0.5) / kAzimuths);
-        for (const Sample& s : bundle.samples)
-          radiance += (this->*light)(
-              {s, (r_m * mu_sun + s.along_m * cosine) / (radius_m_ + s.height_m), 1 - cosine});
-        if (bundle.ground_m >= 0)
-          radiance += bundle.ground *
-                      (this->*ground)((r_m * mu_sun + bundle.ground_m * cosine) / radius_m_);
+      std::array<glm::dvec3, kSuns> radiance;
+      radiance.fill(kAzimuths * Light::night() * bundle.space);
+      for (std::size_t sun = 0; sun < kSuns; ++sun) {
+        const double mu = mu_sun[sun], sun_sine = std::sqrt(std::max(0.0, (1 - mu) * (1 + mu)));
+        for (std::size_t a = 0; a < kAzimuths; ++a) {
+          const double cosine = bundle.mu * mu + sine * sun_sine * azimuth_cosine_[a];
+          ways[sun][a] = {cosine, f64::rayleigh_phase(1 - cosine),
+                          f64::cornette_shanks_phase(1 - cosine, g)};
+          if (bundle.ground_m >= 0)
+            radiance[sun] +=
+                bundle.ground *
+                Light::ground(*this, (r_m * mu + bundle.ground_m * cosine) / radius_m_);
+        }
       }
-      const glm::dvec3 part = bundle.weight / kAzimuths * radiance;
-      field.mean += part;
-      field.p2 += 0.5 * second_legendre(bundle.mu) * part;
-      field.band[bundle.band] += part;
+      for (const Sample& s : bundle.samples) {
+        const Light light(*this, s);
+        const double along = s.along_m / (radius_m_ + s.height_m),
+                     across = r_m / (radius_m_ + s.height_m);
+        for (std::size_t sun = 0; sun < kSuns; ++sun)
+          for (const Way& way : ways[sun])
+            radiance[sun] +=
+                light(across * mu_sun[sun] + along * way.cosine, way.rayleigh, way.aerosol);
+      }
       weights[bundle.band] += bundle.weight;
-      if (bundle.mu > 0) field.irradiance += 4 * pi * bundle.mu * part;
+      for (std::size_t sun = 0; sun < kSuns; ++sun) {
+        Field& field = fields[sun];
+        const glm::dvec3 part = bundle.weight / kAzimuths * radiance[sun];
+        field.mean += part;
+        field.p2 += 0.5 * second_legendre(bundle.mu) * part;
+        field.band[bundle.band] += part;
+        if (bundle.mu > 0) field.irradiance += 4 * pi * bundle.mu * part;
+      }
     }
-    for (std::size_t b = 0; b < kBands; ++b) field.band[b] /= weights[b];
-    return field;
+    for (std::size_t sun = 0; sun < kSuns; ++sun)
+      for (std::size_t b = 0; b < kBands; ++b) fields[sun].band[b] /= weights[b];
   }
 
   static Field closed(const Field& first, const Field& second, const glm::dvec3& kept) {
@@ -258,14 +314,17 @@ class Solver {
   template <class Value>
   AirTable finer(Value&& value) const {
     AirTable table{kBetween * (kSuns - 1) + 1, kHeights, {}};
-    for (int row = 0; row < kHeights; ++row)
+    std::array<glm::dvec3, kSuns> values;
+    for (std::size_t row = 0; row < kHeights; ++row) {
+      for (std::size_t sun = 0; sun < kSuns; ++sun) values[sun] = value(fields_[row * kSuns + sun]);
       for (int i = 0; i < table.width; ++i)
         for (int c = 0; c < 3; ++c) {
           const auto at = [&](int sun) {
-            return value(fields_[std::size_t(row * kSuns + std::clamp(sun, 0, kSuns - 1))])[c];
+            return values[std::size_t(std::clamp(sun, 0, kSuns - 1))][c];
           };
           table.rgb.push_back(float(cubic(at, i)));
         }
+    }
     return table;
   }
   template <class At>
@@ -307,6 +366,7 @@ class Solver {
   std::vector<std::vector<Bundle>> bundles_;  // [height]
   std::vector<glm::dvec3> kept_;              // [height], of a uniform field, by one scattering
   std::vector<double> cuts_m_;
+  std::array<double, kAzimuths> azimuth_cosine_{};
 };
 
 }  // namespace

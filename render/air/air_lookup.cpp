@@ -11,12 +11,14 @@ struct Corners {
   std::array<double, 4> weight;
 };
 
+// Part of the way from texel `low` of n to the next.
+double along(double u, int n, std::size_t& low) {
+  const double place = std::clamp(u, 0.0, 1.0) * (n - 1);
+  low = std::size_t(std::min(int(place), n - 2));
+  return place - double(low);
+}
+
 Corners corners_of(const AirTable& table, double x, double y) {
-  const auto along = [](double u, int n, std::size_t& low) {
-    const double place = std::clamp(u, 0.0, 1.0) * (n - 1);
-    low = std::size_t(std::min(int(place), n - 2));
-    return place - double(low);
-  };
   std::size_t i = 0, j = 0;
   const double f = along(x, table.width, i), g = along(y, table.height, j);
   const std::size_t row = std::size_t(table.width), first = 3 * (j * row + i);
@@ -50,6 +52,33 @@ AirDensity air_density(const Air& air, double height_m) {
                              air.ozone_per_m * f64::air_ozone(height_m, air.ozone_low_m,
                                                               air.ozone_peak_m, air.ozone_high_m);
   return density;
+}
+
+AirLightRow::AirLightRow(const AirTables& tables, double top_m, double height_m)
+    : top_m_(top_m), height_m_(height_m) {
+  double x = 0, y = 0;
+  f64::air_light_coordinates(top_m, height_m, 0, x, y);
+  std::size_t row = 0;
+  const double part = along(y, tables.multiple.height, row);
+  const auto width = std::size_t(tables.multiple.width);
+  texels_.reserve(width);
+  const auto mixed = [&](const AirTable& table, std::size_t texel) {
+    const float *low = &table.rgb[3 * (row * width + texel)], *high = low + 3 * width;
+    return (1 - part) * glm::dvec3{low[0], low[1], low[2]} +
+           part * glm::dvec3{high[0], high[1], high[2]};
+  };
+  for (std::size_t i = 0; i < width; ++i)
+    texels_.push_back({mixed(tables.multiple, i), mixed(tables.multiple_p2, i)});
+}
+
+AirLight AirLightRow::operator()(double mu_sun) const {
+  double x = 0, y = 0;
+  f64::air_light_coordinates(top_m_, height_m_, mu_sun, x, y);
+  std::size_t i = 0;
+  const double part = along(x, int(texels_.size()), i);
+  const AirLight &low = texels_[i], &high = texels_[i + 1];
+  return {low.multiple + part * (high.multiple - low.multiple),
+          low.multiple_p2 + part * (high.multiple_p2 - low.multiple_p2)};
 }
 
 glm::dvec3 AirLookup::depth(double height_m, double mu) const {

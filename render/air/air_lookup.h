@@ -22,6 +22,17 @@ struct SkyLight {
   glm::dvec3 up{0.0}, side{0.0}, down{0.0}, low{0.0};
 };
 
+// AirLookup::light at one height, for many suns.
+class AirLightRow {
+ public:
+  AirLightRow(const AirTables& tables, double top_m, double height_m);
+  AirLight operator()(double mu_sun) const;
+
+ private:
+  double top_m_, height_m_;
+  std::vector<AirLight> texels_;
+};
+
 class AirLookup {
  public:
   AirLookup(const Air& air, double radius_m, const AirTables& tables)
@@ -30,6 +41,7 @@ class AirLookup {
   // To the top of the air; meaningless below the horizon.
   glm::dvec3 depth(double height_m, double mu) const;
   AirLight light(double height_m, double mu_sun) const;
+  AirLightRow light_row(double height_m) const { return {tables_, air_.top_m, height_m}; }
   SkyLight sky(double height_m, double mu_sun) const;
 
  private:

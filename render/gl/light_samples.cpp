@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <tuple>
+#include <bit>
 
 namespace nepho::gl {
 namespace {
@@ -14,19 +14,33 @@ int index_of(int x, int y, int z) {
   return (z * kSide + y) * kSide + x;
 }
 
+// Samples at one end of an axis.
+std::array<Mask, 3> ends_of(int end) {
+  std::array<Mask, 3> ends;
+  const std::array<int, 3> strides = {1, kSide, kSide * kSide};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (int s = 0; s < kSamples; ++s)
+      ends[axis][std::size_t(s)] = s / strides[axis] % kSide == end;
+  return ends;
+}
+
 // Each sample and its neighbours, edges and corners included.
 Mask grown(const Mask& mask) {
+  static const std::array<Mask, 3> first = ends_of(0), last = ends_of(kSide - 1);
   Mask result = mask;
-  for (int stride : {1, kSide, kSide * kSide}) {
-    const Mask before = result;
-    for (int s = 0; s < kSamples; ++s) {
-      if (!before[std::size_t(s)]) continue;
-      const int at = s / stride % kSide;
-      if (at > 0) result.set(std::size_t(s - stride));
-      if (at < kSide - 1) result.set(std::size_t(s + stride));
-    }
-  }
+  std::size_t stride = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis, stride *= kSide)
+    result |= (result & ~first[axis]) >> stride | (result & ~last[axis]) << stride;
   return result;
+}
+
+// Samples of a tile that another may hold as well.
+std::vector<std::uint32_t> on_faces() {
+  std::vector<std::uint32_t> list;
+  for (std::uint32_t s = 0; s < kSamples; ++s)
+    if (s % 9 % kBrickCells == 0 || s / 9 % 9 % kBrickCells == 0 || s / 81 % kBrickCells == 0)
+      list.push_back(s);
+  return list;
 }
 
 Mask needed_of(const LeafBrick& brick) {
@@ -106,39 +120,49 @@ LightSamples::LightSamples(const Forest& forest, bool all) {
 // what the sun's pass has found there goes along with the sky's.
 void LightSamples::share(const std::vector<Place>& places, Masks& masks, Pairs& pairs) const {
   struct OnFace {
-    std::uint32_t volume_root;
-    std::array<std::uint32_t, 3> index;
-    bool spare;
+    std::array<std::uint32_t, 4> place;  // volume and root, index on the finest lattice
     std::uint32_t entry;
-    bool same_place(const OnFace& other) const {
-      return volume_root == other.volume_root && index == other.index;
+  };
+  static const std::vector<std::uint32_t> faces = on_faces();
+  std::vector<OnFace> all;
+  std::size_t count = 0;
+  for (const Mask& mask : masks)
+    for (const std::uint32_t s : faces) count += mask[s];
+  all.reserve(count);
+  for (std::size_t tile = 0; tile < masks.size(); ++tile)
+    for (const std::uint32_t s : faces) {
+      if (!masks[tile][s]) continue;
+      const Place& place = places[tile];
+      OnFace& sample = all.emplace_back();
+      sample.entry = std::uint32_t(kSamples * tile) + s;
+      sample.place = {place.volume_root, place.first[0] + s % 9 * place.step[0],
+                      place.first[1] + s / 9 % 9 * place.step[1],
+                      place.first[2] + s / 81 * place.step[2]};
+    }
+  // By place, in an open hash table: the first needed one there, or the first.
+  constexpr std::uint32_t kFree = ~0u;
+  std::vector<std::uint32_t> owners(std::bit_ceil(2 * all.size() + 1), kFree);
+  const auto needed = [&](std::uint32_t n) {
+    return needed_[all[n].entry / kSamples][all[n].entry % kSamples];
+  };
+  const auto slot_of = [&](const OnFace& sample) -> std::uint32_t& {
+    std::uint64_t h = 0;
+    for (const std::uint32_t part : sample.place) h = (h ^ part) * 0x9e3779b97f4a7c15u;
+    for (std::size_t at = h >> 32;; ++at) {
+      std::uint32_t& owner = owners[at & (owners.size() - 1)];
+      if (owner == kFree || all[owner].place == sample.place) return owner;
     }
   };
-  std::vector<OnFace> all;
-  for (std::size_t tile = 0; tile < masks.size(); ++tile)
-    for (std::size_t s = 0; s < kSamples; ++s) {
-      if (!masks[tile][s]) continue;
-      const std::array<std::uint32_t, 3> at = {std::uint32_t(s % 9), std::uint32_t(s / 9 % 9),
-                                               std::uint32_t(s / 81)};
-      if (std::ranges::none_of(at, [](std::uint32_t i) { return i % kBrickCells == 0; })) continue;
-      OnFace sample{places[tile].volume_root, places[tile].first, !needed_[tile][s],
-                    std::uint32_t(kSamples * tile + s)};
-      for (std::size_t a = 0; a < 3; ++a) sample.index[a] += at[a] * places[tile].step[a];
-      all.push_back(sample);
-    }
-  std::ranges::sort(all, {}, [](const OnFace& sample) {
-    return std::tie(sample.volume_root, sample.index, sample.spare, sample.entry);
-  });
-  std::size_t owner = 0;
-  for (std::size_t n = 1; n < all.size(); ++n) {
-    if (!all[n].same_place(all[owner])) {
-      owner = n;
-      continue;
-    }
+  for (std::uint32_t n = 0; n < all.size(); ++n) {
+    std::uint32_t& owner = slot_of(all[n]);
+    if (owner == kFree || (!needed(owner) && needed(n))) owner = n;
+  }
+  for (std::uint32_t n = 0; n < all.size(); ++n) {
+    const std::uint32_t owner = slot_of(all[n]);
+    if (owner == n) continue;
     masks[all[n].entry / kSamples].reset(all[n].entry % kSamples);
     pairs.push_back({all[n].entry, all[owner].entry});
   }
-  std::ranges::sort(pairs);
 }
 
 namespace {

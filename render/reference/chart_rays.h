@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "bricks/box_chart.h"
 #include "reference/chart_ray.h"
@@ -77,21 +79,59 @@ class BoxRay final : public ChartRay {
   glm::dvec3 count_, origin_, slope_;
 };
 
-// The six faces of the cube: on it, a face's middle is its normal, and the middles of its sides are
-// normal + u or v. The same for all shells.
-struct FaceAxes {
-  glm::dvec3 normal, u, v;
+// A line and spheres about the origin. What does not depend on the sphere is worked out once.
+class SphereChords {
+ public:
+  struct Chord {
+    double first, second;  // distances along the line, ascending
+  };
+  SphereChords(const glm::dvec3& origin, const glm::dvec3& direction);
+  std::optional<Chord> with(double radius) const;  // none where it is missed
+
+ private:
+  double a_, b_, r0_, miss_, slope_;
 };
 
+// Angles of tangents that follow each other closely, as a ray's do: by the difference from one that
+// is known, to 1e-16 rad; std::atan only where that is 0.02 rad or more.
+class NearAngle {
+ public:
+  double of(double tangent) {
+    const double apart = (tangent - tangent_) / (1 + tangent * tangent_);
+    if (!(std::abs(apart) < kNear_rad)) {
+      tangent_ = tangent;
+      return angle_ = std::atan(tangent);
+    }
+    const double s = apart * apart;
+    return angle_ + apart * (1 - s * (1.0 / 3 - s * (1.0 / 5 - s * (1.0 / 7))));
+  }
+
+ private:
+  static constexpr double kNear_rad = 0.02;
+  double tangent_ = 0, angle_ = 0;
+};
+
+// The six faces of the cube: on it, a face's middle is its normal, and the middles of its sides are
+// normal + u or v, each an axis of space or its negative. The same for all shells.
+struct FaceAxes {
+  struct Axis {
+    int axis;
+    double sign;
+    double of(const glm::dvec3& p) const { return sign * p[axis]; }
+  };
+  Axis normal, u, v;
+};
+
+// Not for two threads at once: remembers tangents and angles of the last place.
 class ShellRay final : public ChartRay {
  public:
   ShellRay(const ShellChart& chart, const Index3& cells, const Ray& ray);
 
   Start start(double t_max_m) const override;
   glm::dvec3 cells_at(int root, double t_m) const override;
-  // Each wall is left in one sense only, so that no root has to be chosen: the ray's distance from
-  // a plane is linear in t; a sphere below can be met before the closest approach to the centre,
-  // and one above after it.
+  // Each wall is left in one sense only, so that no root has to be chosen: a coordinate of a face
+  // rises or falls all along the ray, whose distance from a plane is linear in t; a sphere below
+  // can be met before the closest approach to the centre, and one above after it.
   Exit exit(int root, const Block& block, double t_m) const override;
   bool cross_end(const Exit& exit, double& t_m, int& root, Cell& cell) const override;
   Index3 wrapped(const Cell& cell) const override {
@@ -106,11 +146,21 @@ class ShellRay final : public ChartRay {
     return chart_.body().equatorial_m +
            (chart_.bottom_m() + wall / count_.z * chart_.thickness_m());
   }
+  // Tangent of a wall across an axis: most often that of the last call.
+  double wall_tangent(std::size_t axis, std::int64_t wall) const;
+
   const ShellChart& chart_;
   Index3 cells_;
   glm::dvec3 count_, direction_, origin_;  // scaled space
   double closest_m_;
+  SphereChords chords_;
   const std::array<FaceAxes, 6>& axes_;
+  mutable std::array<NearAngle, 2> angle_{};
+  struct Wall {
+    std::int64_t wall = std::numeric_limits<std::int64_t>::min();
+    double tangent = 0;
+  };
+  mutable std::array<Wall, 2> wall_{};
 };
 
 }  // namespace nepho

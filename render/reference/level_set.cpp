@@ -131,12 +131,12 @@ std::shared_ptr<const LeafBrick> FinestLevels::brick(std::size_t volume, NodeKey
 
 LevelLeaf FinestLevels::leaf(std::size_t volume, int root, const Index3& finest_cell) const {
   const Lattice& lattice = info(volume).lattice;
-  int finest = lattice.max_level();
-  if (cut_) {
-    const TreeNode& node = leaf_at(cut_->volumes[volume], root, finest_cell);
-    finest = std::min(finest, node.key.level() + finer_);
+  int finest = lattice.max_level(), level = 0;
+  if (cut_) {  // what it split is not the same as something coarser
+    level = leaf_at(cut_->volumes[volume], root, finest_cell).key.level();
+    finest = std::min(finest, level + finer_);
   }
-  for (int level = 0;; ++level) {
+  for (;; ++level) {
     const NodeKey key = node_of(lattice, root, finest_cell, level);
     const NodeSummary s = summary(volume, key);
     const bool last = level == finest;

@@ -27,6 +27,8 @@ class LevelSet {
   virtual std::size_t size() const = 0;
   virtual const VolumeInfo& info(std::size_t volume) const = 0;
   virtual LevelLeaf leaf(std::size_t volume, int root, const Index3& finest_cell) const = 0;
+  // Whether noise_per_m is ever other than 0.
+  virtual bool has_noise() const { return false; }
   // Added to a decoded sample of `leaf`; `global` is its index on the leaf's level.
   virtual double noise_per_m(std::size_t volume, const LevelLeaf& leaf,
                              const Index3& global) const {
@@ -62,6 +64,7 @@ class CutLevels : public LevelSet {
 class NoisyCutLevels final : public CutLevels {
  public:
   NoisyCutLevels(const Forest& forest, std::uint64_t seed) : CutLevels(forest), seed_(seed) {}
+  bool has_noise() const override { return true; }
   double noise_per_m(std::size_t volume, const LevelLeaf& leaf,
                      const Index3& global) const override;
 

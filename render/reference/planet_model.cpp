@@ -92,7 +92,7 @@ SkyLight PlanetModel::sky_light(const Place& place) const {
 bool PlanetModel::hill_hides_sun(const glm::dvec3& point_m, const PlanetSurface::Spot& spot) const {
   const glm::dvec3 start_m =
       point_m + kOffGround_m * spot.up + 0.02 * surface_.cell_m() * spot.normal;
-  return surface_.distance_m({start_m, to_sun_}) < kNoDistance_m;
+  return surface_.hides({start_m, to_sun_});
 }
 
 glm::dvec3 PlanetModel::ground_W_per_m2_sr_nm(const Ray& ray, double t_m,

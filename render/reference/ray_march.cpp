@@ -114,7 +114,8 @@ double RayMarch::optical_depth(const Ray& ray, double t_max_m, double most) cons
       const double h = length_m / steps;
       double k0 = walk.extinction_per_m(walk.t0_m());
       for (int s = 0; s < steps; ++s) {
-        const double t = walk.t0_m() + s * h, k1 = walk.extinction_per_m(t + h);
+        const double t = walk.t0_m() + s * h;
+        const double k1 = walk.extinction_per_m(s + 1 == steps ? walk.t1_m() : t + h);
         tau += f64::simpson_optical_depth(k0, walk.extinction_per_m(t + h / 2), k1, h);
         k0 = k1;
       }

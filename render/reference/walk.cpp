@@ -1,6 +1,7 @@
 #include "reference/walk.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,10 +13,6 @@ namespace {
 
 constexpr std::size_t kMaxPieces = 50'000'000;
 
-std::int64_t floor_div(std::int64_t a, std::int64_t b) {
-  return a / b - (a % b < 0);
-}
-
 }  // namespace
 
 VolumeWalk::VolumeWalk(const LevelSet& levels, std::size_t volume, const Ray& ray, double t_max_m,
@@ -26,6 +23,7 @@ VolumeWalk::VolumeWalk(const LevelSet& levels, std::size_t volume, const Ray& ra
       whole_constants_(whole_constants),
       steps_(levels.steps_in_cell()),
       own_field_(levels.is_own_field()),
+      noisy_(levels.has_noise()),
       start_(ray_->start(t_max_m)),
       root_(start_.root),
       cell_(start_.cell),
@@ -53,30 +51,27 @@ void VolumeWalk::find_leaf() {
                &own = lattice.cells(leaf_.key.level());
   const Index3 at = leaf_.key.ijk();
   for (std::size_t a = 0; a < 3; ++a) {
-    size_[a] = finest[a] / own[a];
+    const std::int64_t size = finest[a] / own[a];
+    size_bits_[a] = std::countr_zero(std::uint64_t(size));
     period_[a] = cell_[a] - std::int64_t(inside[a]);
-    node_.low[a] = period_[a] + std::int64_t(at[a]) * kBrickCells * size_[a];
-    node_.high[a] = node_.low[a] + kBrickCells * size_[a];
+    node_.low[a] = period_[a] + std::int64_t(at[a]) * kBrickCells * size;
+    node_.high[a] = node_.low[a] + kBrickCells * size;
   }
 }
 
 void VolumeWalk::load_corners() {
-  Index3 s;
-  for (std::size_t a = 0; a < 3; ++a)
-    s[a] = std::uint32_t((block_.low[a] - node_.low[a]) / size_[a]);
   const LeafBrick& brick = *leaf_.brick;
   const IceCodes* ice = brick.ice.get();
   for (std::uint32_t c = 0; c < 8; ++c) {
-    const Index3 corner = {s[0] + (c & 1), s[1] + (c >> 1 & 1), s[2] + (c >> 2)};
+    const Index3 corner = {sample_[0] + (c & 1), sample_[1] + (c >> 1 & 1), sample_[2] + (c >> 2)};
     const std::size_t at = brick_offset(corner[0], corner[1], corner[2]);
     const std::uint16_t code = brick.codes[at];
     corners_[c] = double(decode(code, brick.scale, brick.offset));
     if (ice) ice_corners_[c] = double(decode(ice->codes[at], ice->scale, ice->offset));
-    // Zero decodes exactly; what coding did to it is nothing.
-    if (code != 0 || brick.offset != 0)
-      corners_[c] = std::max(
-          0.0, corners_[c] +
-                   levels_.noise_per_m(volume_, leaf_, Lattice::global_sample(leaf_.key, corner)));
+    if (code == 0 && brick.offset == 0) continue;  // 0 exactly: what coding did to it is nothing
+    if (noisy_)
+      corners_[c] += levels_.noise_per_m(volume_, leaf_, Lattice::global_sample(leaf_.key, corner));
+    corners_[c] = std::max(0.0, corners_[c]);
   }
 }
 
@@ -84,14 +79,17 @@ bool VolumeWalk::next() {
   if (done_) return false;
   if (++pieces_ > kMaxPieces) throw std::logic_error("VolumeWalk: does not end");
   t0_m_ = resume_m_;
+  begin_ = end_;
   if (!in_leaf()) find_leaf();
   block_ = node_;
   const bool cells =
       kind() == NodeKind::kBrick || (leaf_.kind == NodeKind::kConstant && !whole_constants_);
   if (cells)
     for (std::size_t a = 0; a < 3; ++a) {
-      block_.low[a] += floor_div(cell_[a] - node_.low[a], size_[a]) * size_[a];
-      block_.high[a] = block_.low[a] + size_[a];
+      const std::int64_t sample = (cell_[a] - node_.low[a]) >> size_bits_[a];
+      sample_[a] = std::uint32_t(sample);
+      block_.low[a] += sample << size_bits_[a];
+      block_.high[a] = block_.low[a] + (std::int64_t(1) << size_bits_[a]);
     }
   if (leaf_.kind == NodeKind::kBrick) load_corners();
 
@@ -101,6 +99,7 @@ bool VolumeWalk::next() {
   done_ = !(exit.t_m < start_.end_m);
   if (done_) return true;
   const glm::dvec3 at = ray_->cells_at(root_, exit.t_m);
+  end_ = {exit.t_m, root_, at};
   for (int a = 0; a < 3; ++a) {
     const auto i = std::size_t(a);
     if (a == exit.axis)
@@ -124,10 +123,16 @@ double VolumeWalk::extinction_per_m(double t_m) const {
   return own_field_ ? own_extinction_per_m(t_m) : brick_extinction_per_m(t_m);
 }
 
+glm::dvec3 VolumeWalk::cells_at(double t_m) const {
+  if (begin_.t_m == t_m && begin_.root == leaf_root_) return begin_.at;
+  if (end_.t_m == t_m && end_.root == leaf_root_) return end_.at;
+  return ray_->cells_at(leaf_root_, t_m);
+}
+
 double VolumeWalk::own_extinction_per_m(double t_m) const {
   const Lattice& lattice = levels_.info(volume_).lattice;
   const Index3& n = lattice.cells(lattice.max_level());
-  const glm::dvec3 at = ray_->cells_at(leaf_root_, t_m);
+  const glm::dvec3 at = cells_at(t_m);
   RootPosition position{leaf_root_, glm::dvec3{0.0}};
   for (int a = 0; a < 3; ++a) {
     const auto i = std::size_t(a);
@@ -145,11 +150,12 @@ double VolumeWalk::brick_extinction_per_m(double t_m) const {
 }
 
 glm::dvec3 VolumeWalk::fraction(double t_m) const {
-  const glm::dvec3 at = ray_->cells_at(leaf_root_, t_m);
+  const glm::dvec3 at = cells_at(t_m);
   glm::dvec3 f;
   for (int a = 0; a < 3; ++a) {
     const auto i = std::size_t(a);
-    f[a] = std::clamp((at[a] - double(block_.low[i])) / double(size_[i]), 0.0, 1.0);
+    f[a] = std::clamp((at[a] - double(block_.low[i])) / double(std::int64_t(1) << size_bits_[i]),
+                      0.0, 1.0);
   }
   return f;
 }
@@ -174,9 +180,7 @@ double VolumeWalk::interpolated(const std::array<double, 8>& corners, double t_m
 
 glm::dvec4 VolumeWalk::light(const LightTiles& tiles, double t_m) const {
   const float* tile = tiles.tile(volume_, leaf_.lit);
-  Index3 s;
-  for (std::size_t a = 0; a < 3; ++a)
-    s[a] = std::uint32_t((block_.low[a] - node_.low[a]) / size_[a]);
+  const Index3& s = sample_;
   std::array<glm::dvec4, 8> corners;
   corners.fill(glm::dvec4(0, 1, 1, 1));
   for (std::uint32_t c = 0; c < 8; ++c) {
@@ -202,7 +206,7 @@ double VolumeWalk::ice_part(double t_m) const {
 
 int VolumeWalk::sub_steps(double length_m) const {
   if (kind() != NodeKind::kBrick) return 1;
-  return std::max(steps_, ray_->sub_steps(length_m, double(size_[2])));
+  return std::max(steps_, ray_->sub_steps(length_m, double(std::int64_t(1) << size_bits_[2])));
 }
 
 }  // namespace nepho

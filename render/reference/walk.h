@@ -57,7 +57,7 @@ class VolumeWalk {
   std::unique_ptr<ChartRay> ray_;
   bool whole_constants_;
   int steps_;  // in a cell, at least
-  bool own_field_;
+  bool own_field_, noisy_;
   ChartRay::Start start_;
   int root_ = 0;
   ChartRay::Cell cell_{};  // finest cell that the next piece begins in
@@ -65,10 +65,20 @@ class VolumeWalk {
   LevelLeaf leaf_;
   int leaf_root_ = 0;
   ChartRay::Block node_{}, block_{};
-  ChartRay::Cell size_{};                            // finest cells in one of the leaf's
+  std::array<int, 3> size_bits_{};                   // log2 of finest cells in one of the leaf's
+  Index3 sample_{};                                  // of the piece's first corner, in its leaf
   ChartRay::Cell period_{};                          // finest cells before the leaf's own period
   std::array<double, 8> corners_{}, ice_corners_{};  // the second where the brick has ice
   double t0_m_ = 0, t1_m_ = 0, resume_m_ = 0;
+  // Where the ray is at an end of the piece, in finest cells of leaf_root_: most values are asked
+  // for there.
+  struct Known {
+    double t_m = -1;
+    int root = 0;
+    glm::dvec3 at{0.0};
+  };
+  Known begin_, end_;
+  glm::dvec3 cells_at(double t_m) const;
   std::size_t pieces_ = 0;
 };
 

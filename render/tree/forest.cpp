@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <set>
@@ -286,16 +288,15 @@ const TreeNode& leaf_at(const VolumeTree& tree, int root, const Index3& finest_c
   const Lattice& lattice = tree.source->info().lattice;
   const Index3& finest = lattice.cells(lattice.max_level());
   const TreeNode* node = &tree.nodes[std::size_t(root)];
+  std::array<int, 3> bits;  // log2 of finest cells in a node
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    bits[axis] = std::countr_zero(finest[axis] / lattice.cells(0)[axis] * kBrickCells);
   while (node->kind == NodeKind::kInner) {
-    const int level = node->key.level();
-    const SplitMask mask = lattice.split_axes(level);
-    const Index3& cells = lattice.cells(level + 1);
+    const SplitMask mask = lattice.split_axes(node->key.level());
     std::uint32_t child = 0, bit = 0;
     for (int axis = 0; axis < 3; ++axis)
-      if (splits(mask, axis)) {
-        const std::uint32_t ratio = finest[std::size_t(axis)] / cells[std::size_t(axis)];
-        child |= (finest_cell[std::size_t(axis)] / ratio / kBrickCells & 1) << bit++;
-      }
+      if (splits(mask, axis))
+        child |= (finest_cell[std::size_t(axis)] >> --bits[std::size_t(axis)] & 1) << bit++;
     node = &tree.nodes[node->first_child + child];
   }
   return *node;

@@ -26,6 +26,7 @@ class UncodedLevels final : public CutLevels {
  public:
   UncodedLevels(const Forest& forest, const FieldSource& source)
       : CutLevels(forest), source_(source) {}
+  bool has_noise() const override { return true; }
   double noise_per_m(std::size_t, const LevelLeaf& leaf, const Index3& g) const override {
     const Index3 first = Lattice::global_sample(leaf.key, {0, 0, 0});
     const std::uint16_t code =

@@ -28,6 +28,7 @@ class ErrorScenes : public GlFixture, public ::testing::WithParamInterface<std::
 class RecodedLevels final : public CutLevels {
  public:
   using CutLevels::CutLevels;
+  bool has_noise() const override { return true; }
   double noise_per_m(std::size_t, const LevelLeaf& leaf, const Index3& g) const override {
     const Index3 first = Lattice::global_sample(leaf.key, {0, 0, 0});
     const LeafBrick& brick = *leaf.brick;

@@ -90,9 +90,11 @@ void HatRemap::remap_domain(const HatDomain& domain, std::size_t first_cell,
     if (range.count == 0) return;
     const ModelColumn model = column(cell);
     const auto nz = std::size_t(columns.nz);
-    vertical.means(model, model.value_per_m, range.first, {&hats_[0][range.at], range.count});
+    const VerticalHats::SmoothColumn inside = vertical.smooth(model);
+    vertical.means(model, inside, model.value_per_m, range.first,
+                   {&hats_[0][range.at], range.count});
     if (!has_ice) return;
-    vertical.means(model, {&columns.ice_extinction_per_m[cell * nz], nz}, range.first,
+    vertical.means(model, inside, {&columns.ice_extinction_per_m[cell * nz], nz}, range.first,
                    {&hats_[1][range.at], range.count});
   });
 }
@@ -279,13 +281,18 @@ std::uint64_t HatRemap::bytes() const {
          tile_at_.size() * 4 * sizeof(std::uint64_t);
 }
 
-double chart_height_m(const Ellipsoid& body, double latitude_deg, double height_m) {
-  // r'^2 - a^2 = 2 N h + A h^2 on the normal of that latitude.
-  const double a = body.equatorial_m, ratio = a / body.polar_m;
+// r'^2 - a^2 = 2 N h + A h^2 on the normal of that latitude.
+ChartHeight::ChartHeight(const Ellipsoid& body, double latitude_deg)
+    : equatorial_m_(body.equatorial_m) {
+  const double ratio = body.equatorial_m / body.polar_m;
   const double s = std::sin(latitude_deg * std::numbers::pi / 180), s2 = s * s;
-  const double n = a / std::sqrt(1 - (1 - 1 / (ratio * ratio)) * s2);
-  const double excess = height_m * (2 * n + (1 + (ratio * ratio - 1) * s2) * height_m);
-  return excess / (a + std::sqrt(a * a + excess));
+  twice_normal_m_ = 2 * (equatorial_m_ / std::sqrt(1 - (1 - 1 / (ratio * ratio)) * s2));
+  bulge_ = 1 + (ratio * ratio - 1) * s2;
+}
+
+double ChartHeight::operator()(double height_m) const {
+  const double excess = height_m * (twice_normal_m_ + bulge_ * height_m);
+  return excess / (equatorial_m_ + std::sqrt(equatorial_m_ * equatorial_m_ + excess));
 }
 
 }  // namespace nepho::forecast

@@ -117,6 +117,16 @@ class HatRemap {
 
 // The chart's vertical coordinate r' - a (m) of a point `height_m` over the ellipsoid at a geodetic
 // latitude: exact.
-double chart_height_m(const Ellipsoid& body, double latitude_deg, double height_m);
+class ChartHeight {
+ public:
+  ChartHeight(const Ellipsoid& body, double latitude_deg);
+  double operator()(double height_m) const;
+
+ private:
+  double equatorial_m_, twice_normal_m_, bulge_;
+};
+inline double chart_height_m(const Ellipsoid& body, double latitude_deg, double height_m) {
+  return ChartHeight(body, latitude_deg)(height_m);
+}
 
 }  // namespace nepho::forecast

@@ -39,13 +39,10 @@ bool VerticalHats::clear(const ModelColumn& column, std::size_t layer) const {
   return !(value > 0) || double(value) < options_.clear_below_per_m;
 }
 
-double VerticalHats::up_m(const ModelColumn& column, double height_m) const {
-  return chart_height_m(chart_.body(), column.latitude_deg, height_m);
-}
-
-glm::dvec2 VerticalHats::extent(const ModelColumn& column, std::size_t layer) const {
+glm::dvec2 VerticalHats::extent(const ModelColumn& column, const ChartHeight& up_m,
+                                std::size_t layer) const {
   const auto voxels = [&](double height_m) {
-    return std::clamp((up_m(column, height_m) - chart_.bottom_m()) / voxel_m_, 0.0, double(cells_));
+    return std::clamp((up_m(height_m) - chart_.bottom_m()) / voxel_m_, 0.0, double(cells_));
   };
   const double below_m = layer == 0 ? options_.extend_below_m : 0;
   return {voxels(double(column.interface_m[layer]) - below_m),
@@ -54,10 +51,11 @@ glm::dvec2 VerticalHats::extent(const ModelColumn& column, std::size_t layer) co
 
 VerticalHats::Range VerticalHats::range(const ModelColumn& column) const {
   Range range;
+  const ChartHeight up_m(chart_.body(), column.latitude_deg);
   double low = cells_, high = 0;
   for (std::size_t layer = 0; layer < column.value_per_m.size(); ++layer) {
     if (clear(column, layer)) continue;
-    const glm::dvec2 z = extent(column, layer);
+    const glm::dvec2 z = extent(column, up_m, layer);
     if (!(z.y > z.x)) continue;
     if (!(high > low)) range.cloudy_m.x = double(column.interface_m[layer]);
     range.cloudy_m.y = double(column.interface_m[layer + 1]);
@@ -72,12 +70,13 @@ VerticalHats::Range VerticalHats::range(const ModelColumn& column) const {
 
 VerticalHats::SmoothColumn VerticalHats::smooth(const ModelColumn& column) const {
   const std::size_t layers = column.value_per_m.size();
-  SmoothColumn smooth;
+  SmoothColumn smooth{ChartHeight(chart_.body(), column.latitude_deg), {}, {}};
+  if (options_.layers != Layers::kSmooth) return smooth;
   smooth.below.resize(layers + 1);
   smooth.profile.resize(layers);
   for (std::size_t k = 0; k <= layers; ++k)
     smooth.below[k] =
-        volume_below(up_m(column, double(column.interface_m[k])) / chart_.body().equatorial_m);
+        volume_below(smooth.up_m(double(column.interface_m[k])) / chart_.body().equatorial_m);
   std::vector<double> thickness(layers), mean(layers);
   for (std::size_t k = 0; k < layers; ++k) {
     thickness[k] = smooth.below[k + 1] - smooth.below[k];
@@ -105,10 +104,9 @@ void VerticalHats::add_layer(glm::dvec2 extent, const Rule& rule, Extinction&& e
   }
 }
 
-void VerticalHats::means(const ModelColumn& column, std::span<const float> part_per_m,
-                         std::uint32_t first, std::span<float> means) const {
-  SmoothColumn inside;
-  if (options_.layers == Layers::kSmooth) inside = smooth(column);
+void VerticalHats::means(const ModelColumn& column, const SmoothColumn& inside,
+                         std::span<const float> part_per_m, std::uint32_t first,
+                         std::span<float> means) const {
   std::vector<double> sum(means.size(), 0.0);
   const std::size_t layers = column.value_per_m.size();
   for (std::size_t layer = 0; layer < layers; ++layer) {
@@ -121,12 +119,13 @@ void VerticalHats::means(const ModelColumn& column, std::span<const float> part_
     const double own_per_m = double(part_per_m[from]);
     if (inside.profile.empty()) {
       add_layer(
-          extent(column, layer), kTwoPoints, [&](double) { return own_per_m; }, first, sum);
+          extent(column, inside.up_m, layer), kTwoPoints, [&](double) { return own_per_m; }, first,
+          sum);
       continue;
     }
     const double share = std::min(1.0, own_per_m / double(column.value_per_m[from]));
     const auto part_at = [&](double up) { return share * inside.value_per_m(from, up); };
-    add_layer(extent(column, layer), kThreePoints, part_at, first, sum);
+    add_layer(extent(column, inside.up_m, layer), kThreePoints, part_at, first, sum);
   }
   for (std::size_t k = 0; k < means.size(); ++k) means[k] = float(sum[k] / volume_[first + k]);
 }

@@ -36,22 +36,28 @@ class VerticalHats {
   // a part of it (nz, 1/m). What is clear in all is clear in part, and within a smooth layer a part
   // is the same share of the whole everywhere: no mean of it exceeds that of the whole.
   void means(const ModelColumn& column, std::span<const float> part_per_m, std::uint32_t first,
-             std::span<float> means) const;
+             std::span<float> means) const {
+    this->means(column, smooth(column), part_per_m, first, means);
+  }
+  // The same of several parts of one column, which is smoothed once.
+  struct SmoothColumn;
+  void means(const ModelColumn& column, const SmoothColumn& inside,
+             std::span<const float> part_per_m, std::uint32_t first, std::span<float> means) const;
 
- private:
-  // A column's layers as parabolas in volume.
+  // A column's layers as parabolas in volume; empty where layers stay constant.
   struct SmoothColumn {
+    ChartHeight up_m;
     std::vector<double> below;      // volume below each interface, int r^2 dr from r = a, over a^3
     std::vector<Parabola> profile;  // of each layer
     // Within a layer, at r = a (1 + up).
     double value_per_m(std::size_t layer, double up) const;
   };
   SmoothColumn smooth(const ModelColumn& column) const;
+
+ private:
   bool clear(const ModelColumn& column, std::size_t layer) const;
-  // The chart's height of a height over the ellipsoid (m).
-  double up_m(const ModelColumn& column, double height_m) const;
   // Bottom and top of a layer in voxels above the chart's bottom.
-  glm::dvec2 extent(const ModelColumn& column, std::size_t layer) const;
+  glm::dvec2 extent(const ModelColumn& column, const ChartHeight& up_m, std::size_t layer) const;
   // Adds a layer's integral under each hat from `first` on (1/m times voxels).
   template <class Rule, class Extinction>
   void add_layer(glm::dvec2 extent, const Rule& rule, Extinction&& extinction_per_m,

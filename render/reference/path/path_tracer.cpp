@@ -123,7 +123,7 @@ PathSample PathTracer::sample(const Ray& ray, Random& random) const {
 
 void PathTracer::follow(Path& path) const {
   while (path.alive) {
-    const double ground_m = around_.ground_m(path.ray, path.on_ground);
+    double ground_m = kNoDistance_m;
     const PhaseSampler* phase = next_scattering(path, ground_m);
 #if defined(NEPHO_MUTANT_BOUNCE_CAP)
     if (path.result.scatterings > 64) break;
@@ -146,12 +146,19 @@ bool PathTracer::branches(const Path& path) const {
   return peak_ && (exact_orders_ < 0 || path.result.scatterings < exact_orders_);
 }
 
-const PhaseSampler* PathTracer::next_scattering(Path& path, double ground_m) const {
+// Collisions before the ground: free paths are short within clouds, and terrain, whose search is
+// long, is looked for no further than the first of them.
+const PhaseSampler* PathTracer::next_scattering(Path& path, double& ground_m) const {
   Random& random = path.random;
-  const PathMedium::Collision hit = medium_.collide(path.ray, ground_m, random);
-  const double reach_m = std::min(ground_m, hit.t_m);
+  const double sea_m = around_.sea_m(path.ray);
+  const PathMedium::Collision hit = medium_.collide(path.ray, sea_m, random);
+  double reach_m = std::min(sea_m, hit.t_m);
+  PathAir::Collision in_air;
+  if (air_) in_air = air_->collide(path.ray, reach_m, path.hero, random);
+  if (in_air.event != PathAir::Event::kNone) reach_m = in_air.t_m;
+  ground_m = around_.ground_m(path.ray, path.on_ground, reach_m);
+  if (ground_m < kNoDistance_m) return nullptr;
   if (air_) {
-    const PathAir::Collision in_air = air_->collide(path.ray, reach_m, path.hero, random);
     if (in_air.event == PathAir::Event::kAbsorbed) path.alive = false;
     if (in_air.event != PathAir::Event::kNone) {
       path.ray.origin_m += in_air.t_m * path.ray.direction;
@@ -195,7 +202,7 @@ void PathTracer::light_at_collision(Path& path, const PhaseSampler& phase) const
   if (kept < 1 && path.random.uniform() >= kept) return;
   const glm::dvec3 to_sun = around_.to_sun(path.random);
   const Ray ray{path.ray.origin_m, to_sun};
-  if (around_.ground_m(ray) < kNoDistance_m) return;
+  if (around_.ground_hides(ray)) return;
   const glm::dvec3 value = phase.values(one_minus_cos(path.ray.direction, to_sun));
   const double density = mean(value);
   const double own = around_.sun_density(to_sun);
@@ -252,8 +259,7 @@ bool PathTracer::meet_ground(Path& path, double ground_m) const {
   const double part = around_.beam() ? 1 : power_weight(own, around_.density(spot, to_eye, to_sun));
   const glm::dvec3 light =
       part * path.weights() * around_.reflect(spot, to_eye, to_sun) * around_.sun_W_per_m2_nm();
-  if (most(light) > 0 && !(around_.ground_m(ray, true) < kNoDistance_m))
-    path.add(light * passed(path, ray));
+  if (most(light) > 0 && !around_.ground_hides(ray, true)) path.add(light * passed(path, ray));
 
   const Surroundings::Way way = around_.sample(spot, to_eye, path.random);
   const glm::dvec3 reflected = around_.reflect(spot, to_eye, way.direction);

@@ -61,8 +61,8 @@ class PathTracer {
   struct Path;
   double passed(const Path& path, const Ray& ray) const;
   // The next scattering, at which the path then stands; null: none, the path is out of the clouds
-  // and the air, at the ground, or absorbed.
-  const PhaseSampler* next_scattering(Path& path, double ground_m) const;
+  // and the air, before the ground at ground_m, or absorbed.
+  const PhaseSampler* next_scattering(Path& path, double& ground_m) const;
   const PhaseSampler& phase(const PathMedium::Collision& collision) const;
   const PhaseSampler& smooth_phase(const PathMedium::Collision& collision) const;
   void light_at_collision(Path& path, const PhaseSampler& phase) const;

@@ -52,8 +52,18 @@ glm::dvec3 Surroundings::disc_W_per_m2_sr_nm(const glm::dvec3& direction) const 
   return sun_density(direction) * irradiance_;
 }
 
-double Surroundings::ground_m(const Ray& ray, bool from_it) const {
-  return surface_ ? surface_->distance_m(ray, from_it) : ground_.distance_m(ray);
+double Surroundings::ground_m(const Ray& ray, bool from_it, double within_m) const {
+  if (surface_) return surface_->distance_m(ray, from_it, within_m);
+  const double ground_m = ground_.distance_m(ray);
+  return ground_m <= within_m ? ground_m : kNoDistance_m;
+}
+
+bool Surroundings::ground_hides(const Ray& ray, bool from_it) const {
+  return surface_ ? surface_->hides(ray, from_it) : ground_.distance_m(ray) < kNoDistance_m;
+}
+
+double Surroundings::sea_m(const Ray& ray) const {
+  return surface_ ? surface_->sea_m(ray) : ground_.distance_m(ray);
 }
 
 glm::dvec3 Surroundings::background_W_per_m2_sr_nm(const glm::dvec3& direction, bool ground) const {

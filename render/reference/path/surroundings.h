@@ -27,8 +27,13 @@ class Surroundings {
   // Of the disc, seen in one of its directions.
   glm::dvec3 disc_W_per_m2_sr_nm(const glm::dvec3& direction) const;
 
-  // Where a ray meets the ground, or kNoDistance_m; `from_it`: other than where it starts.
-  double ground_m(const Ray& ray, bool from_it = false) const;
+  // Where a ray meets the ground, or kNoDistance_m where that is beyond `within_m`; `from_it`:
+  // other than where it starts.
+  double ground_m(const Ray& ray, bool from_it, double within_m) const;
+  // Whether it does.
+  bool ground_hides(const Ray& ray, bool from_it = false) const;
+  // Where the ground is met at the latest, if it is at all: what stands on it may be met before.
+  double sea_m(const Ray& ray) const;
   // Whether it scatters; otherwise `below` is seen there.
   bool ground_scatters() const { return surface_.has_value(); }
   // What is seen without anything in front; the sun's disc is not in it.
