@@ -2,9 +2,14 @@
 // are quadratic. Spans grow with height and distance alone, smoothly, and the last one ends where the
 // air does: pictures show no knots. Clouds are marched within the spans.
 
-#ifndef NEPHO_AIR_FINENESS
-#define NEPHO_AIR_FINENESS 1.0
+// Spans are as short as the tolerance asks for. At 1e-2 they change pictures by 0.06 to 0.3 % rms.
+float air_fineness() {
+#ifdef NEPHO_CELL_EXACT
+  return 1.5;
+#else
+  return clamp(0.7 * pow(1e-2 / frame.tolerance, 1.0 / 3.0), 0.4, 3.0);
 #endif
+}
 
 struct Span {
   float begin_m, end_m;
@@ -92,7 +97,7 @@ float span_length(float t_m) {
     inverse2 += near * near;
   }
 #endif
-  return inversesqrt(inverse2) / (planet_ray.stretch * NEPHO_AIR_FINENESS);
+  return inversesqrt(inverse2) / (planet_ray.stretch * air_fineness());
 }
 
 // The span behind this one. Before and behind the air there is nothing, in one span.

@@ -24,6 +24,8 @@ float band_depth(vec4 texel, float depth_m) {
   return -log(max(1.0 - texel.x, 1e-6)) * clamp((texel.y - texel.x * depth_m) / texel.z, 0.0, 1.0);
 }
 
+const float SUN_IS_UP = 0.02;  // sine of its height
+
 // Part of the sun's light that clouds leave at t_m. Where its beam grazes the planet, between lines
 // above all clouds and lines through hundreds of km of them, a texel that is wider than what the beam
 // passes over shows its own square: within 2.5 texels of that edge shadows on the air fade away.
@@ -31,14 +33,18 @@ float sun_visible(float t_m) {
 #ifdef NEPHO_MUTANT_NO_AIR_SHADOW
   return 1.0;
 #endif
-  if (planet_height(t_m) > planet.cloud_top_m) return 1.0;
+  float height_m = planet_height(t_m);
+  if (height_m > planet.cloud_top_m) return 1.0;
   vec3 q = map_start + t_m * map_along;
   vec2 far = abs(q.xy) / planet.map_warp_m;
   vec2 at = 0.5 * sign(q.xy) * log(far + sqrt(far * far + 1.0)) / planet.map_range + 0.5;
   float tau = 0.0;
-#define NEPHO_DO_BAND(b) tau += band_depth(textureLod(sun_map, vec3(at, float(b)), 0.0), q.z);
-  NEPHO_EACH_BAND
-#undef NEPHO_DO_BAND
+  // Under a sun that is up, what is below a place is not in its way. A loop, as bands are looked up by all
+  // rays side by side until none is left.
+  float sun_up = planet_ray.sun_up_m + t_m * planet_ray.stretch * planet_ray.sun_along;
+  int band = sun_up > SUN_IS_UP * planet_ray.radius_m ? int((height_m - planet.cloud_bottom_m) / planet.map_band_m) : 0;
+  for (band = max(band, 0); band < NEPHO_BANDS; ++band)
+    tau += band_depth(textureLod(sun_map, vec3(at, float(band)), 0.0), q.z);
 #ifdef NEPHO_MUTANT_SUN_MAP_EDGE
   return exp(-tau);
 #endif
