@@ -149,7 +149,7 @@ class EmptyBoxes {
           box.high[a] == grid_.size[a] ? EMPTY_BOX_BEYOND : std::uint32_t(box.high[a]) + 1;
       ends[a] = low | high << 16;
     }
-    return {ends[0], NODE_EMPTY | EMPTY_BOX, ends[1], std::bit_cast<float>(ends[2])};
+    return {ends[0], NODE_EMPTY | EMPTY_BOX, ends[1], ends[2]};
   }
 
   const Grid& grid_;
@@ -189,12 +189,12 @@ int append_grids(std::vector<NodeRecord>& nodes, const VolumeTree& tree, int fir
     }
     const std::size_t at = std::size_t(first) + 2 * std::size_t(root);
     nodes[at] = {std::uint32_t(grid.low[0]), std::uint32_t(grid.low[1]), std::uint32_t(grid.low[2]),
-                 std::bit_cast<float>(std::uint32_t(nodes.size()))};
-    nodes[at + 1] = {
-        std::uint32_t(grid.size[0]), std::uint32_t(grid.size[1]), std::uint32_t(grid.size[2]),
-        std::bit_cast<float>(std::uint32_t(grid.side[0] | grid.side[1] << 5 | grid.side[2] << 10))};
+                 std::uint32_t(nodes.size())};
+    nodes[at + 1] = {std::uint32_t(grid.size[0]), std::uint32_t(grid.size[1]),
+                     std::uint32_t(grid.size[2]),
+                     std::uint32_t(grid.side[0] | grid.side[1] << 5 | grid.side[2] << 10)};
     for (std::size_t c = 0; c < cells.size(); c += 4)
-      nodes.push_back({cells[c], cells[c + 1], cells[c + 2], std::bit_cast<float>(cells[c + 3])});
+      nodes.push_back({cells[c], cells[c + 1], cells[c + 2], cells[c + 3]});
   }
   return first;
 }

@@ -60,7 +60,7 @@ struct NodeRecord {
   uint first_child_or_lit;
   uint flags;
   uint brick_or_constant;  // slot in the atlas, or the constant's float bits (1/m)
-  float majorant_per_m;
+  uint cloud_box;          // brick: first and last samples that are not 0: x, y, z, x, y, z, 4 bits each
 };
 
 struct BrickRecord {

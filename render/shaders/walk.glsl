@@ -26,6 +26,7 @@ struct Walk {
   uint kind;
   float constant_per_m;
   float range_per_m, offset_per_m;
+  uint cloud_box;    // NodeRecord
   vec3 per_cell;     // its own cells per finest cell
   vec3 tile;         // atlas texel of its first sample
   vec3 light_tile;
@@ -116,6 +117,7 @@ void descend(int volume, inout Walk w, ivec3 cell) {
     vec2 brick = bricks[node.z];
     w.range_per_m = brick.x;
     w.offset_per_m = brick.y;
+    w.cloud_box = node.w;
     w.tile = tile_origin(node.z, atlas_tiles);
 #ifdef NEPHO_ICE
     vec2 ice = ice_bricks[node.z];
