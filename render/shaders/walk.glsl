@@ -170,16 +170,16 @@ vec3 leaf_cells_at(int volume, Walk w, float t_m) {
 #endif
 }
 
-// Before places in the leaf are asked for, between two distances. The parabola that touches the curved
-// coordinates half-way stands for them: 0.52 angle^2 of a cell off, for a leaf that wide in rad (the
-// third derivatives of angle and height along a ray, times (1/2)^3 / 6).
+// Before places in the leaf are asked for, between two distances. The parabola that meets the curved
+// coordinates half-way and is nearest to their cubic stands for them: 0.13 angle^2 of a cell off, for a
+// leaf that wide in rad (the third derivatives of angle and height along a ray, times (1/2)^3 / 24).
 void begin_leaf_segment(int volume, inout Walk w, float begin_m, float end_m) {
 #ifdef NEPHO_LEAF_PARABOLA
   w.segment_m = 0.5 * (begin_m + end_m);
   w.place = curved_leaf_cells_at(volume, w, w.segment_m);
 #ifdef NEPHO_SHELL
   if (is_shell(volume)) {
-    shell_cells_growth(volume, w, w.segment_m, w.place_rise, w.place_bend);
+    shell_cells_growth(volume, w, w.segment_m, 0.5 * (end_m - begin_m), w.place_rise, w.place_bend);
     w.place_rise *= w.per_cell;
     w.place_bend *= w.per_cell;
     return;
