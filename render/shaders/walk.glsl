@@ -62,17 +62,18 @@ uvec4 node_at(uint n) { return nodes[n]; }
 
 ivec3 node_sides(uint flags) { return ivec3(flags >> 6 & 31u, flags >> 11 & 31u, flags >> 16 & 31u); }
 
-// What lies over, under or beside the grid: nothing, as far as the chart reaches.
+// What lies over, under or beside the grid: nothing, as far as the chart reaches. Boxes over and under it
+// are as wide as the chart, those beside it in x no higher than the grid, those in y no wider: no two
+// share a cell, as a ray along an edge of both would go from one to the other and back.
 uvec4 beyond_grid(ivec3 place, ivec3 size) {
   const uint all = EMPTY_BOX_BEYOND << 16;
   uvec4 node = uvec4(all, NODE_EMPTY | EMPTY_BOX, all, all);
-  uvec3 over = uvec3(size + 1) | all;
-  if (place.z >= size.z) node.w = over.z;
-  else if (place.z < 0) node.w = 1u << 16;
-  else if (place.x >= size.x) node.x = over.x;
-  else if (place.x < 0) node.x = 1u << 16;
-  else if (place.y >= size.y) node.z = over.y;
-  else node.z = 1u << 16;
+  uvec3 within = 1u | uvec3(size + 1) << 16, over = uvec3(size + 1) | all;
+  const uint under = 1u << 16;
+  bool beside_z = place.z >= 0 && place.z < size.z, beside_x = place.x >= 0 && place.x < size.x;
+  node.w = beside_z ? within.z : place.z < 0 ? under : over.z;
+  if (beside_z) node.x = beside_x ? within.x : place.x < 0 ? under : over.x;
+  if (beside_z && beside_x) node.z = place.y < 0 ? under : over.y;
   return node;
 }
 
@@ -86,13 +87,15 @@ void descend(int volume, inout Walk w, ivec3 cell) {
   ivec3 local = cell - period;
   ivec3 grid_side = ivec3(w.grid_size.w & 31u, w.grid_size.w >> 5 & 31u, w.grid_size.w >> 10 & 31u);
   ivec3 place = (local >> grid_side) - ivec3(w.grid.xyz), size = ivec3(w.grid_size.xyz);
-  ivec3 inside = clamp(place, ivec3(0), size - 1);
-  uvec4 node = beyond_grid(place, size);
-  if (place == inside) {
+  bool inside = all(greaterThanEqual(place, ivec3(0))) && all(lessThan(place, size));
+  uint at = uint(volumes[volume].first_node + w.root);
+  if (inside) {
     int n = (place.z * size.y + place.y) * size.x + place.x;
     uvec4 four = node_at(w.grid.w + uint(n >> 2));
-    node = node_at((n & 2) == 0 ? ((n & 1) == 0 ? four.x : four.y) : (n & 1) == 0 ? four.z : four.w);
+    at = (n & 2) == 0 ? ((n & 1) == 0 ? four.x : four.y) : (n & 1) == 0 ? four.z : four.w;
   }
+  uvec4 node = node_at(at);
+  if (!inside && (w.grid_size.w & GRID_IS_WHOLE) != 0u) node = beyond_grid(place, size);
   while ((node.y & 7u) == NODE_INNER) {
     ivec3 split = ivec3(node.y >> 3 & 1u, node.y >> 4 & 1u, node.y >> 5 & 1u);
     ivec3 upper = local >> max(node_sides(node.y) - 1, 0) & split;
