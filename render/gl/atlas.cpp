@@ -14,7 +14,7 @@ std::uint64_t bytes(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit
                     std::uint64_t light_texel, bool ice = false) {
   const auto atlas = atlas_size(bricks), light = atlas_size(lit);
   if (atlas[0] == 0 || light[0] == 0) return kNever;
-  return nodes * (sizeof(NodeRecord) + 4 * kGridCellsPerNode) +
+  return nodes * (sizeof(NodeRecord) + kGridBytesPerNode) +
          bricks * (sizeof(BrickRecord) + sizeof(LeafBrick)) + lit * sizeof(LitRecord) +
          2 * texels(atlas) + light_texel * texels(light) +
          (ice ? bricks * (sizeof(BrickRecord) + sizeof(IceCodes)) + 2 * texels(atlas) : 0);

@@ -122,6 +122,20 @@ std::uint32_t flags_of(const TreeNode& node, const BrickSource& source) {
   return flags;
 }
 
+// NodeRecord::cloud_box; first ones beyond the last where there is nothing.
+std::uint32_t cloud_box(const LeafBrick& brick) {
+  std::array<std::uint32_t, 3> first = {15, 15, 15}, last = {0, 0, 0};
+  for (std::uint32_t s = 0; s < brick.codes.size(); ++s) {
+    if (brick.codes[s] == 0 && !(brick.offset > 0)) continue;
+    const std::array<std::uint32_t, 3> at = {s % 9, s / 9 % 9, s / 81};
+    for (std::size_t a = 0; a < 3; ++a) {
+      first[a] = std::min(first[a], at[a]);
+      last[a] = std::max(last[a], at[a]);
+    }
+  }
+  return first[0] | first[1] << 4 | first[2] << 8 | last[0] << 12 | last[1] << 16 | last[2] << 20;
+}
+
 void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
   const auto first_node = std::uint32_t(scene.nodes.size());
   const auto first_brick = std::uint32_t(scene.bricks.size());
@@ -130,11 +144,14 @@ void add_nodes(GpuScene& scene, const VolumeTree& tree, int volume) {
   const VolumeInfo& info = tree.source->info();
   const bool shell = info.chart->kind() == ChartKind::kShell;
   for (const TreeNode& node : tree.nodes) {
-    NodeRecord record{0, flags_of(node, *tree.source), 0, node.majorant_per_m};
+    NodeRecord record{0, flags_of(node, *tree.source), 0, 0};
     if (node.kind == NodeKind::kInner) record.first_child_or_lit = first_node + node.first_child;
     if (node.kind == NodeKind::kConstant)
       record.brick_or_constant = std::bit_cast<std::uint32_t>(node.constant_per_m);
-    if (node.kind == NodeKind::kBrick) record.brick_or_constant = first_brick + node.brick;
+    if (node.kind == NodeKind::kBrick) {
+      record.brick_or_constant = first_brick + node.brick;
+      record.cloud_box = cloud_box(tree.bricks[node.brick]);
+    }
     if (node.kind == NodeKind::kConstant || node.kind == NodeKind::kBrick) {
       if (shell)
         scene.widest_leaf_rad =

@@ -77,34 +77,41 @@ void fill(const Grid& grid, const Triple& low, const std::array<int, 3>& side, s
         cells[std::size_t((z * grid.size[1] + y) * grid.size[0] + x)] = node;
 }
 
-// Boxes of grid cells without extinction, which may overlap: each as large as it gets by growing
-// from a cell on one side after the other.
+// Boxes of grid cells without extinction, each as large as it gets by growing from a cell on one
+// side after the other. They share no cell: a ray that runs along an edge of both would go from one
+// to the other and back.
 class EmptyBoxes {
  public:
   EmptyBoxes(const Grid& grid, const std::vector<NodeRecord>& nodes,
              const std::vector<std::uint32_t>& cells)
       : grid_(grid) {
     for (std::size_t c = 0; c < grid.cells(); ++c)
-      empty_.push_back((nodes[cells[c]].flags & 7u) == NODE_EMPTY);
+      open_.push_back((nodes[cells[c]].flags & 7u) == NODE_EMPTY);
   }
 
-  // Enters at most `most` of them in the cells that they fill, by their indices after `first`.
+  // Enters them in the cells that they fill, by their indices after `first`. None where more than
+  // `most` are needed: leaves without extinction may reach beyond the grid, and so into other
+  // boxes.
   std::vector<NodeRecord> enter(std::vector<std::uint32_t>& cells, std::uint32_t first,
-                                std::size_t most) const {
+                                std::size_t most) {
     std::vector<NodeRecord> records;
-    std::vector<bool> open = empty_;
-    for (std::size_t c = 0; c < open.size() && records.size() < most; ++c) {
-      if (!open[c]) continue;
+    std::vector<std::uint32_t> entered = cells;
+    for (std::size_t c = 0; c < open_.size(); ++c) {
+      if (!open_[c]) continue;
+      if (records.size() == most) return {};
       const Box box = grown(c);
       each(box, [&](std::size_t cell) {
-        if (open[cell]) cells[cell] = first + std::uint32_t(records.size());
-        open[cell] = false;
+        entered[cell] = first + std::uint32_t(records.size());
+        open_[cell] = false;
         return true;
       });
       records.push_back(record(box));
     }
+    cells = entered;
+    whole_ = true;
     return records;
   }
+  bool whole() const { return whole_; }
 
  private:
   struct Box {
@@ -133,27 +140,23 @@ class EmptyBoxes {
         slab.low[a] = side % 2 ? box.high[a] : box.low[a] - 1;
         slab.high[a] = slab.low[a] + 1;
         if (slab.low[a] < 0 || slab.high[a] > grid_.size[a]) continue;
-        if (!each(slab, [&](std::size_t c) { return bool(empty_[c]); })) continue;
+        if (!each(slab, [&](std::size_t c) { return bool(open_[c]); })) continue;
         (side % 2 ? box.high[a] : box.low[a]) += side % 2 ? 1 : -1;
         grows = true;
       }
     }
     return box;
   }
-  // Beyond the grid all is empty.
   NodeRecord record(const Box& box) const {
     std::array<std::uint32_t, 3> ends{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::uint32_t low = box.low[a] == 0 ? 0 : std::uint32_t(box.low[a]) + 1;
-      const std::uint32_t high =
-          box.high[a] == grid_.size[a] ? EMPTY_BOX_BEYOND : std::uint32_t(box.high[a]) + 1;
-      ends[a] = low | high << 16;
-    }
-    return {ends[0], NODE_EMPTY | EMPTY_BOX, ends[1], std::bit_cast<float>(ends[2])};
+    for (std::size_t a = 0; a < 3; ++a)
+      ends[a] = std::uint32_t(box.low[a] + 1) | std::uint32_t(box.high[a] + 1) << 16;
+    return {ends[0], NODE_EMPTY | EMPTY_BOX, ends[1], ends[2]};
   }
 
   const Grid& grid_;
-  std::vector<bool> empty_;
+  std::vector<bool> open_;
+  bool whole_ = false;
 };
 
 }  // namespace
@@ -177,24 +180,25 @@ int append_grids(std::vector<NodeRecord>& nodes, const VolumeTree& tree, int fir
         fill(grid, low_of(info.lattice, node.key), side,
              std::uint32_t(first_node) + std::uint32_t(n), cells);
     }
+    std::uint32_t whole = 0;
+    spent += 4 * cells.size();
     if (std::ranges::all_of(grid.size, [](std::int64_t n) { return n < EMPTY_BOX_BEYOND - 1; })) {
-      const std::size_t allowed = 4 * kGridCellsPerNode * tree.nodes.size();
-      const std::size_t most = allowed > 4 * cells.size() + spent
-                                   ? (allowed - 4 * cells.size() - spent) / sizeof(NodeRecord)
-                                   : 0;
-      const auto boxes =
-          EmptyBoxes(grid, nodes, cells).enter(cells, std::uint32_t(nodes.size()), most);
+      const std::size_t allowed = kGridBytesPerNode * tree.nodes.size();
+      const std::size_t most = allowed > spent ? (allowed - spent) / sizeof(NodeRecord) : 0;
+      EmptyBoxes empty(grid, nodes, cells);
+      const auto boxes = empty.enter(cells, std::uint32_t(nodes.size()), most);
       nodes.insert(nodes.end(), boxes.begin(), boxes.end());
-      spent += 4 * cells.size() + sizeof(NodeRecord) * boxes.size();
+      spent += sizeof(NodeRecord) * boxes.size();
+      whole = empty.whole() ? GRID_IS_WHOLE : 0;
     }
     const std::size_t at = std::size_t(first) + 2 * std::size_t(root);
     nodes[at] = {std::uint32_t(grid.low[0]), std::uint32_t(grid.low[1]), std::uint32_t(grid.low[2]),
-                 std::bit_cast<float>(std::uint32_t(nodes.size()))};
-    nodes[at + 1] = {
-        std::uint32_t(grid.size[0]), std::uint32_t(grid.size[1]), std::uint32_t(grid.size[2]),
-        std::bit_cast<float>(std::uint32_t(grid.side[0] | grid.side[1] << 5 | grid.side[2] << 10))};
+                 std::uint32_t(nodes.size())};
+    nodes[at + 1] = {std::uint32_t(grid.size[0]), std::uint32_t(grid.size[1]),
+                     std::uint32_t(grid.size[2]),
+                     std::uint32_t(grid.side[0] | grid.side[1] << 5 | grid.side[2] << 10) | whole};
     for (std::size_t c = 0; c < cells.size(); c += 4)
-      nodes.push_back({cells[c], cells[c + 1], cells[c + 2], std::bit_cast<float>(cells[c + 3])});
+      nodes.push_back({cells[c], cells[c + 1], cells[c + 2], cells[c + 3]});
   }
   return first;
 }

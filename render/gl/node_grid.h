@@ -12,8 +12,9 @@ namespace nepho::gl {
 // or a box of cells without extinction: a ray passes it at once, whatever leaves are in it, and all
 // that is beyond the grid.
 
-// At most so many cells per node of a tree, and always this many for a root: 4 bytes each.
-inline constexpr std::size_t kGridCellsPerNode = 2, kLeastGridCells = 64;
+// At most so many cells per node of a tree, and always this many for a root: 4 bytes each. Boxes
+// are left out that would take more than the bytes.
+inline constexpr std::size_t kGridCellsPerNode = 2, kLeastGridCells = 64, kGridBytesPerNode = 12;
 
 // Appends, for each root of the tree, two records (low x, y, z, first record of its cells; size x,
 // y, z, log2 of a cell's sides in finest cells, 5 bits each) and then boxes (frame.layout.h) and

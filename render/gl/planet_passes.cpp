@@ -148,6 +148,7 @@ void PlanetPasses::upload_surface(const PlanetPasses* last) {
     texels.push_back(map.water[i]);
   }
   Texture surface = make_texture_2d(map.nx, map.ny, GL_RG32F, GL_NEAREST);
+  glTextureParameteri(surface.id(), GL_TEXTURE_WRAP_S, GL_REPEAT);  // around all longitudes
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage2D(surface.id(), 0, 0, 0, map.nx, map.ny, GL_RG, GL_FLOAT, texels.data());
   surface_ = std::make_shared<const Texture>(std::move(surface));

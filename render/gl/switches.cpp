@@ -28,7 +28,7 @@ bool reads_texels8(const RenderSettings& settings) {
 }
 
 double parabola_error_cells(const GpuScene& scene) {
-  return 0.52 * scene.widest_leaf_rad * scene.widest_leaf_rad;
+  return 0.2 * scene.widest_leaf_rad * scene.widest_leaf_rad;
 }
 bool uses_parabolas(const RenderRequest& request, const GpuScene& scene) {
   return scene.has_shell && !reads_texels8(request.settings) && !request.leave_nothing_out &&

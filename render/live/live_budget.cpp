@@ -19,7 +19,7 @@ constexpr std::uint32_t kLeastLeaves = 64;
 constexpr double kCacheShare = 0.125;
 // On the CPU, and on the GPU for the two trees there; all are charged to one.
 constexpr std::uint64_t kNodeBytes =
-    sizeof(TreeNode) + 2 * (sizeof(NodeRecord) + 4 * gl::kGridCellsPerNode);
+    sizeof(TreeNode) + 2 * (sizeof(NodeRecord) + gl::kGridBytesPerNode);
 
 std::uint64_t leaf_bytes(bool ice) {
   return sizeof(LeafBrick) + sizeof(LiveTree::Leaf) + (ice ? sizeof(IceCodes) : 0) +

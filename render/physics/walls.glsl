@@ -140,12 +140,17 @@ Number angle_along_ray(Length radius, Length t, Number radial, Number tangential
   return angle_of_point(t * tangential, radius + t * radial);
 }
 
-// How fast it grows there: `turn` to first order of what t grows by, and -turn * fade to second.
-void angle_growth_along_ray(Length radius, Length t, Number radial, Number tangential,
+// How it grows around t: by turn * u - turn * fade * u^2 within `reach` to either side. `turn` is the
+// derivative and three quarters of reach^2 times the third order's coefficient: of the cubic a quarter
+// is left.
+void angle_growth_along_ray(Length radius, Length t, Number radial, Number tangential, Length reach,
                             OUT(InverseLength) turn, OUT(InverseLength) fade) {
   Length along = radius + t * radial;
   Length across = t * tangential;
   Area squared = along * along + across * across;
-  turn = radius * tangential / squared;
   fade = (radial * along + tangential * across) / squared;
+  Number bent = reach * fade;
+  Number third = bent * bent -
+                 Number(0.25) * (radial * radial + tangential * tangential) * (reach * reach / squared);
+  turn = radius * tangential / squared * (Number(1.0) + third);
 }

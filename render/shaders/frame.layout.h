@@ -60,7 +60,7 @@ struct NodeRecord {
   uint first_child_or_lit;
   uint flags;
   uint brick_or_constant;  // slot in the atlas, or the constant's float bits (1/m)
-  float majorant_per_m;
+  uint cloud_box;          // brick: first and last samples that are not 0: x, y, z, x, y, z, 4 bits each
 };
 
 struct BrickRecord {
@@ -77,8 +77,10 @@ struct LitRecord {
 };
 
 #ifdef __cplusplus
-inline constexpr uint NODE_INNER = 0, NODE_EMPTY = 1, NODE_CONSTANT = 2, NODE_BRICK = 3, EMPTY_BOX = 1u << 21, EMPTY_BOX_BEYOND = 65535;
+inline constexpr uint NODE_INNER = 0, NODE_EMPTY = 1, NODE_CONSTANT = 2, NODE_BRICK = 3, EMPTY_BOX = 1u << 21, EMPTY_BOX_BEYOND = 65535,
+                      GRID_IS_WHOLE = 1u << 15;
 }  // namespace nepho
 #else
-const uint NODE_INNER = 0u, NODE_EMPTY = 1u, NODE_CONSTANT = 2u, NODE_BRICK = 3u, EMPTY_BOX = 1u << 21, EMPTY_BOX_BEYOND = 65535u;
+const uint NODE_INNER = 0u, NODE_EMPTY = 1u, NODE_CONSTANT = 2u, NODE_BRICK = 3u, EMPTY_BOX = 1u << 21, EMPTY_BOX_BEYOND = 65535u,
+           GRID_IS_WHOLE = 1u << 15;
 #endif

@@ -56,8 +56,8 @@ Place place_at(float t_m) {
   place.height_m = here.x;
   place.water = here.y;
   // Slope over one cell: bilinear heights then have a continuous normal.
-  vec2 rise = vec2(surface_at(node + vec2(0.5, 0.0)).x - surface_at(node - vec2(0.5, 0.0)).x,
-                   surface_at(node + vec2(0.0, 0.5)).x - surface_at(node - vec2(0.0, 0.5)).x);
+  vec2 rise = vec2(surface_height(node + vec2(0.5, 0.0)) - surface_height(node - vec2(0.5, 0.0)),
+                   surface_height(node + vec2(0.0, 0.5)) - surface_height(node - vec2(0.0, 0.5)));
   dvec3 scaled = planet_scaled(place.point);
   vec3 across = vec3(scaled / sqrt(dot(scaled, scaled)));
   vec3 north = vec3(planet.surface_axes[6], planet.surface_axes[7], planet.surface_axes[8]);

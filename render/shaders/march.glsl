@@ -191,9 +191,46 @@ void begin_segment(float begin_m, float end_m) {
 #undef NEPHO_DO
 }
 
+#if !defined(NEPHO_CELL_EXACT) && (defined(NEPHO_LEAF_PARABOLA) || !defined(NEPHO_SHELL))
+// Widens [first, last] by what the segment has of one leaf's samples that are not 0 and the cells around
+// them: where the straight line between its ends, as wide as the parabola is bent, runs through their box.
+void widen_by_cloud(int volume, float begin_m, float end_m, inout float first_m, inout float last_m) {
+  if (walks[volume].kind == NODE_CONSTANT) {
+    first_m = begin_m;
+    last_m = end_m;
+  }
+  if (walks[volume].kind != NODE_BRICK) return;
+  uint box = walks[volume].cloud_box;
+  float length_m = end_m - begin_m;
+  vec3 slack = vec3(1e-3);
+#ifdef NEPHO_LEAF_PARABOLA
+  slack += 0.25 * length_m * length_m * abs(walks[volume].place_bend);
+#endif
+  vec3 low = vec3(ivec3(box & 15u, box >> 4 & 15u, box >> 8 & 15u) - 1) - slack;
+  vec3 high = vec3(ivec3(box >> 12 & 15u, box >> 16 & 15u, box >> 20) + 1) + slack;
+  vec3 from = leaf_cells_at(volume, walks[volume], begin_m);
+  vec3 along = leaf_cells_at(volume, walks[volume], end_m) - from;
+  along = mix(along, vec3(1e-4), lessThan(abs(along), vec3(1e-4)));
+  vec3 a = (low - from) / along, b = (high - from) / along, enter = min(a, b), leave = max(a, b);
+  float first = max(max(enter.x, enter.y), max(enter.z, 0.0)), last = min(min(leave.x, leave.y), min(leave.z, 1.0));
+  if (first >= last) return;
+  first_m = min(first_m, begin_m + first * length_m);
+  last_m = max(last_m, begin_m + last * length_m);
+}
+#define NEPHO_CLOUD_BOX
+#endif
+
 // Optical depth within one set of leaves.
 float depth_of_segment(float t, float end, bool smooth_) {
   begin_segment(t, end);
+#ifdef NEPHO_CLOUD_BOX
+  float first = end, last = t;
+#define NEPHO_DO(v) widen_by_cloud(v, t, end, first, last);
+  NEPHO_EACH_VOLUME
+#undef NEPHO_DO
+  t = first;
+  end = min(last, end);
+#endif
   float k0 = total_extinction_at(t), tau = 0.0;
   // Constant extinction is one step.
   float h = smooth_ ? end - t : NEPHO_SUN_STEP * cell_length(0.5 * (t + end));

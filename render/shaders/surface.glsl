@@ -48,24 +48,39 @@ vec2 surface_node(float t_m) {
   return surface_ray.node + vec2(x, y) * vec2(planet.surface_per_rad[0], planet.surface_per_rad[1]);
 }
 
-// Height and part of water; all sea outside the map. Four fetches: filters of GPUs have steps.
-vec2 surface_at(vec2 node) {
-  ivec2 size = ivec2(planet.surface_nx, planet.surface_ny);
+// The middle of the four nodes around a place, as texture coordinates, and where the place is between
+// them; false outside of the map.
+bool surface_cell(vec2 node, out vec2 middle, out vec2 between) {
+  vec2 size = vec2(planet.surface_nx, planet.surface_ny);
   bool around = planet.surface_around != 0;
-  if (around) node.x -= floor(node.x / float(size.x)) * float(size.x);
-  vec2 last = vec2(around ? size.x : size.x - 1, size.y - 1);
-  if (any(lessThan(node, vec2(0.0))) || any(greaterThan(node, last))) return vec2(0.0, 1.0);
-  ivec2 low = min(ivec2(node), ivec2(last) - 1);
-  vec2 f = node - vec2(low);
-  ivec2 high = low + 1;
-  if (around && high.x == size.x) high.x = 0;
-  vec2 a = texelFetch(surface_map, low, 0).rg, b = texelFetch(surface_map, ivec2(high.x, low.y), 0).rg;
-  vec2 c = texelFetch(surface_map, ivec2(low.x, high.y), 0).rg, d = texelFetch(surface_map, high, 0).rg;
-  vec2 value = mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
-  return vec2(max(value.x, 0.0), value.y);
+  if (around) node.x -= floor(node.x / size.x) * size.x;
+  vec2 last = vec2(around ? size.x : size.x - 1.0, size.y - 1.0);
+  vec2 low = min(floor(node), last - 1.0);
+  between = node - low;
+  middle = (low + 1.0) / size;  // a map all around repeats
+  return all(greaterThanEqual(node, vec2(0.0))) && all(lessThanEqual(node, last));
+}
+// Filters of GPUs have steps: the four nodes are gathered. Their order is that of textureGather.
+float surface_mix(vec4 four, vec2 between) {
+  vec2 low_high = mix(four.wx, four.zy, between.x);
+  return mix(low_high.x, low_high.y, between.y);
+}
+// All is sea outside of the map.
+float surface_height(vec2 node) {
+  vec2 middle, between;
+  bool inside = surface_cell(node, middle, between);
+  float height_m = surface_mix(textureGather(surface_map, middle, 0), between);
+  return inside ? max(height_m, 0.0) : 0.0;
+}
+// With the part of water.
+vec2 surface_at(vec2 node) {
+  vec2 middle, between;
+  bool inside = surface_cell(node, middle, between);
+  float water = surface_mix(textureGather(surface_map, middle, 1), between);
+  return vec2(surface_height(node), inside ? water : 1.0);
 }
 
-float height_over_surface(float t_m) { return planet_height(t_m) - surface_at(surface_node(t_m)).x; }
+float height_over_surface(float t_m) { return planet_height(t_m) - surface_height(surface_node(t_m)); }
 
 // Where the ray goes under the map's heights, between two distances; FAR where it does not. A step is
 // never longer than the steepest slope allows, but for cells' third parts.
@@ -89,11 +104,11 @@ float terrain_distance(float begin_m, float end_m) {
   }
   if (!under) return FAR;
   // Behind the loop: llvmpipe would run it at every turn. Regula falsi, Illinois: an end that stays
-  // counts half.
-  float low = before, high = t, gap_low = gap_before, gap_high = gap;
-  for (int turn = 0; turn < 6 && high > low; ++turn) {
+  // counts half. To a centimetre: what is left is interpolated.
+  float low = before, high = t, gap_low = gap_before, gap_high = gap, gap_at = 1.0;
+  for (int turn = 0; turn < 6 && high > low && abs(gap_at) > 0.01; ++turn) {
     float at = clamp(low + (high - low) * gap_low / max(gap_low - gap_high, 1e-6), low, high);
-    float gap_at = height_over_surface(at);
+    gap_at = height_over_surface(at);
     if (gap_at > 0.0) {
       low = at;
       gap_low = gap_at;

@@ -26,6 +26,7 @@ struct Walk {
   uint kind;
   float constant_per_m;
   float range_per_m, offset_per_m;
+  uint cloud_box;    // NodeRecord
   vec3 per_cell;     // its own cells per finest cell
   vec3 tile;         // atlas texel of its first sample
   vec3 light_tile;
@@ -61,17 +62,18 @@ uvec4 node_at(uint n) { return nodes[n]; }
 
 ivec3 node_sides(uint flags) { return ivec3(flags >> 6 & 31u, flags >> 11 & 31u, flags >> 16 & 31u); }
 
-// What lies over, under or beside the grid: nothing, as far as the chart reaches.
+// What lies over, under or beside the grid: nothing, as far as the chart reaches. Boxes over and under it
+// are as wide as the chart, those beside it in x no higher than the grid, those in y no wider: no two
+// share a cell, as a ray along an edge of both would go from one to the other and back.
 uvec4 beyond_grid(ivec3 place, ivec3 size) {
   const uint all = EMPTY_BOX_BEYOND << 16;
   uvec4 node = uvec4(all, NODE_EMPTY | EMPTY_BOX, all, all);
-  uvec3 over = uvec3(size + 1) | all;
-  if (place.z >= size.z) node.w = over.z;
-  else if (place.z < 0) node.w = 1u << 16;
-  else if (place.x >= size.x) node.x = over.x;
-  else if (place.x < 0) node.x = 1u << 16;
-  else if (place.y >= size.y) node.z = over.y;
-  else node.z = 1u << 16;
+  uvec3 within = 1u | uvec3(size + 1) << 16, over = uvec3(size + 1) | all;
+  const uint under = 1u << 16;
+  bool beside_z = place.z >= 0 && place.z < size.z, beside_x = place.x >= 0 && place.x < size.x;
+  node.w = beside_z ? within.z : place.z < 0 ? under : over.z;
+  if (beside_z) node.x = beside_x ? within.x : place.x < 0 ? under : over.x;
+  if (beside_z && beside_x) node.z = place.y < 0 ? under : over.y;
   return node;
 }
 
@@ -85,13 +87,15 @@ void descend(int volume, inout Walk w, ivec3 cell) {
   ivec3 local = cell - period;
   ivec3 grid_side = ivec3(w.grid_size.w & 31u, w.grid_size.w >> 5 & 31u, w.grid_size.w >> 10 & 31u);
   ivec3 place = (local >> grid_side) - ivec3(w.grid.xyz), size = ivec3(w.grid_size.xyz);
-  ivec3 inside = clamp(place, ivec3(0), size - 1);
-  uvec4 node = beyond_grid(place, size);
-  if (place == inside) {
+  bool inside = all(greaterThanEqual(place, ivec3(0))) && all(lessThan(place, size));
+  uint at = uint(volumes[volume].first_node + w.root);
+  if (inside) {
     int n = (place.z * size.y + place.y) * size.x + place.x;
     uvec4 four = node_at(w.grid.w + uint(n >> 2));
-    node = node_at((n & 2) == 0 ? ((n & 1) == 0 ? four.x : four.y) : (n & 1) == 0 ? four.z : four.w);
+    at = (n & 2) == 0 ? ((n & 1) == 0 ? four.x : four.y) : (n & 1) == 0 ? four.z : four.w;
   }
+  uvec4 node = node_at(at);
+  if (!inside && (w.grid_size.w & GRID_IS_WHOLE) != 0u) node = beyond_grid(place, size);
   while ((node.y & 7u) == NODE_INNER) {
     ivec3 split = ivec3(node.y >> 3 & 1u, node.y >> 4 & 1u, node.y >> 5 & 1u);
     ivec3 upper = local >> max(node_sides(node.y) - 1, 0) & split;
@@ -116,6 +120,7 @@ void descend(int volume, inout Walk w, ivec3 cell) {
     vec2 brick = bricks[node.z];
     w.range_per_m = brick.x;
     w.offset_per_m = brick.y;
+    w.cloud_box = node.w;
     w.tile = tile_origin(node.z, atlas_tiles);
 #ifdef NEPHO_ICE
     vec2 ice = ice_bricks[node.z];
@@ -168,16 +173,16 @@ vec3 leaf_cells_at(int volume, Walk w, float t_m) {
 #endif
 }
 
-// Before places in the leaf are asked for, between two distances. The parabola that touches the curved
-// coordinates half-way stands for them: 0.52 angle^2 of a cell off, for a leaf that wide in rad (the
-// third derivatives of angle and height along a ray, times (1/2)^3 / 6).
+// Before places in the leaf are asked for, between two distances. The parabola that meets the curved
+// coordinates half-way and is nearest to their cubic stands for them: 0.13 angle^2 of a cell off, for a
+// leaf that wide in rad (the third derivatives of angle and height along a ray, times (1/2)^3 / 24).
 void begin_leaf_segment(int volume, inout Walk w, float begin_m, float end_m) {
 #ifdef NEPHO_LEAF_PARABOLA
   w.segment_m = 0.5 * (begin_m + end_m);
   w.place = curved_leaf_cells_at(volume, w, w.segment_m);
 #ifdef NEPHO_SHELL
   if (is_shell(volume)) {
-    shell_cells_growth(volume, w, w.segment_m, w.place_rise, w.place_bend);
+    shell_cells_growth(volume, w, w.segment_m, 0.5 * (end_m - begin_m), w.place_rise, w.place_bend);
     w.place_rise *= w.per_cell;
     w.place_bend *= w.per_cell;
     return;

@@ -101,19 +101,20 @@ vec3 shell_cells_at(int volume, Walk w, float t_m) {
                        height_along_ray(w.radius.z, t, w.radial.z) * per_m);
 }
 
-// To first and second order of the metres from t_m on.
-void shell_cells_growth(int volume, Walk w, float t_m, out vec3 rise, out vec3 bend) {
-  float t = (t_m - w.anchor_m) * w.stretch;
+// As angle_growth_along_ray(), in metres from t_m.
+void shell_cells_growth(int volume, Walk w, float t_m, float reach_m, out vec3 rise, out vec3 bend) {
+  float t = (t_m - w.anchor_m) * w.stretch, reach = reach_m * w.stretch;
   for (int a = 0; a < 2; ++a) {
     float turn, fade;
-    angle_growth_along_ray(w.radius[a], t, w.radial[a], w.slope[a], turn, fade);
+    angle_growth_along_ray(w.radius[a], t, w.radial[a], w.slope[a], reach, turn, fade);
     rise[a] = turn * shell_floats[volume].per_cell_rad;
     bend[a] = -rise[a] * fade;
   }
   float r = w.radius.z + height_along_ray(w.radius.z, t, w.radial.z);
   float mu = (w.radius.z * w.radial.z + t) / r;
-  rise.z = mu * shell_floats[volume].per_cell_height_m;
-  bend.z = 0.5 * max(1.0 - mu * mu, 0.0) / r * shell_floats[volume].per_cell_height_m;
+  float level = max(1.0 - mu * mu, 0.0), per_r = 1.0 / r;
+  rise.z = mu * (1.0 - 0.375 * level * (reach * per_r) * (reach * per_r)) * shell_floats[volume].per_cell_height_m;
+  bend.z = 0.5 * level * per_r * shell_floats[volume].per_cell_height_m;
   rise *= w.stretch;
   bend *= w.stretch * w.stretch;
 }
