@@ -43,13 +43,20 @@ double signed_to_unsigned(double value, double wrap) {
 
 }  // namespace
 
-double Packing::value(double packed) const {
-  packed = signed_to_unsigned(packed, wrap);
-  for (const double fill : fills)
-    if (packed == fill) return std::numeric_limits<double>::quiet_NaN();
-  if (!(packed >= lowest && packed <= highest)) return std::numeric_limits<double>::quiet_NaN();
-  return packed * scale + offset;
+template <class From, class To>
+void Packing::unpack(const From* packed, std::size_t count, To* values) const {
+  const auto missing = std::numeric_limits<To>::quiet_NaN();
+  for (std::size_t n = 0; n < count; ++n) {
+    const double from = signed_to_unsigned(double(packed[n]), wrap);
+    To value = from >= lowest && from <= highest ? To(from * scale + offset) : missing;
+    for (const double fill : fills)
+      if (from == fill) value = missing;
+    values[n] = value;
+  }
 }
+template void Packing::unpack(const float*, std::size_t, float*) const;
+template void Packing::unpack(const double*, std::size_t, float*) const;
+template void Packing::unpack(const double*, std::size_t, double*) const;
 
 Packing packing_of(const FileVariable& variable, int type) {
   Packing packing;
