@@ -1,7 +1,9 @@
 #include <netcdf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "sources/netcdf/nc_file.h"
 
@@ -46,12 +48,13 @@ double signed_to_unsigned(double value, double wrap) {
 template <class From, class To>
 void Packing::unpack(const From* packed, std::size_t count, To* values) const {
   const auto missing = std::numeric_limits<To>::quiet_NaN();
+  const double first_fill = fills.empty() ? std::nan("") : fills.front();  // NaN is no number's
+  const std::span<const double> more(fills.begin() + !fills.empty(), fills.end());
   for (std::size_t n = 0; n < count; ++n) {
     const double from = signed_to_unsigned(double(packed[n]), wrap);
-    To value = from >= lowest && from <= highest ? To(from * scale + offset) : missing;
-    for (const double fill : fills)
-      if (from == fill) value = missing;
-    values[n] = value;
+    const bool there = from >= lowest && from <= highest && from != first_fill &&
+                       (more.empty() || std::ranges::find(more, from) == more.end());
+    values[n] = there ? To(from * scale + offset) : missing;
   }
 }
 template void Packing::unpack(const float*, std::size_t, float*) const;
