@@ -35,6 +35,8 @@ class HorizontalGrid {
   // Geodetic latitude and longitude (deg, longitude continuous along x, any multiple of a turn) at
   // x in [0, nx], y in [0, ny]. NaN: off the planet, as cells beside a satellite's disc are.
   virtual glm::dvec2 lat_lon_deg(double x, double y) const = 0;
+  // The unit vector of that place.
+  virtual glm::dvec3 direction(double x, double y) const;
   // Where cells are no rows and columns (triangles, Voronoi's cells): nx of them, ny is 1, and
   // lat_lon_deg is the centre of the cell floor(x). Null for all other grids.
   virtual const CellPolygons* polygons() const { return nullptr; }

@@ -1,6 +1,7 @@
 #include "gl/pixel_plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -33,33 +34,39 @@ std::uint32_t hash(std::uint32_t x) {
   return x ^ x >> 16;
 }
 
+// The four channels at once.
+using Four = float __attribute__((vector_size(16)));
+Four four(const PixelTexel& texel) {
+  return std::bit_cast<Four>(texel);
+}
+Four magnitude(Four x) {
+  return x < 0 ? -x : x;
+}
+Four greater(Four a, Four b) {
+  return a < b ? b : a;
+}
+
 // Four texels in a row; the outer two may lie beyond the grid and are then those of a parabola.
 struct Row {
-  PixelTexel a, b, c, d;
+  Four a, b, c, d;
 };
 Row row_of(const std::vector<PixelTexel>& texels, std::size_t b, std::size_t step, bool first,
            bool last) {
-  Row row{{}, texels[b], texels[b + step], {}};
-  if (!first) row.a = texels[b - step];
-  if (!last) row.d = texels[b + 2 * step];
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (first) row.a[i] = 3 * row.b[i] - 3 * row.c[i] + row.d[i];
-    if (last) row.d[i] = row.a[i] - 3 * row.b[i] + 3 * row.c[i];
-  }
+  Row row{{}, four(texels[b]), four(texels[b + step]), {}};
+  if (!first) row.a = four(texels[b - step]);
+  if (!last) row.d = four(texels[b + 2 * step]);
+  if (first) row.a = 3 * row.b - 3 * row.c + row.d;
+  if (last) row.d = row.a - 3 * row.b + 3 * row.c;
   return row;
 }
 // The cubic's middle; `bend` is how far it is from the parabolas through three of the four, which
 // grows with what a cubic misses, and at least a part of how far a straight line is: the parabolas
 // agree where a kink is just between them.
-PixelTexel middle_of(const Row& row, float (&bend)[4]) {
-  PixelTexel middle;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const float b2 = row.a[i] - 2 * row.b[i] + row.c[i], c2 = row.b[i] - 2 * row.c[i] + row.d[i];
-    middle[i] = 0.5f * (row.b[i] + row.c[i]) - (b2 + c2) / 16;
-    bend[i] =
-        std::max(std::abs(b2 - c2) / 2, kStraightShare * std::max(std::abs(b2), std::abs(c2))) / 8;
-  }
-  return middle;
+Four middle_of(const Row& row, Four& bend) {
+  const Four b2 = row.a - 2 * row.b + row.c, c2 = row.b - 2 * row.c + row.d;
+  bend =
+      greater(magnitude(b2 - c2) / 2, kStraightShare * greater(magnitude(b2), magnitude(c2))) / 8;
+  return 0.5f * (row.b + row.c) - (b2 + c2) / 16;
 }
 
 }  // namespace
@@ -186,11 +193,14 @@ double PixelPlan::interpolate(PixelValues& values, int x, int y, const Stage& st
       std::size_t(stage.grid) * (stage.along_y ? std::size_t(settings_.width) : 1);
   const std::size_t from = to - step / 2;
   const bool first = before<stage.grid, none_behind = before + 2 * stage.grid> last;
-  float light_bend[4], passed_bend[4];
-  PixelTexel seen = middle_of(row_of(values.seen, from, step, first, none_behind), light_bend);
-  PixelTexel met = middle_of(row_of(values.met, from, step, first, none_behind), passed_bend);
-  for (float& value : seen) value = std::max(value, 0.0f);
-  for (float& value : met) value = std::clamp(value, 0.0f, 1.0f);
+  Four light_bend, passed_bend;
+  const Four light_here =
+      middle_of(row_of(values.seen, from, step, first, none_behind), light_bend);
+  const Four passed_here =
+      middle_of(row_of(values.met, from, step, first, none_behind), passed_bend);
+  const auto seen = std::bit_cast<PixelTexel>(greater(light_here, Four{}));
+  const Four positive = greater(passed_here, Four{});
+  auto met = std::bit_cast<PixelTexel>(positive > 1 ? Four{1, 1, 1, 1} : positive);
   met[3] = values.met[to][3];
   values.seen[to] = seen;
   values.met[to] = met;

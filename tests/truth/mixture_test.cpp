@@ -100,6 +100,22 @@ TEST(Mixture, OfVolumesHasTheProductOfTransmittances) {
                    {{"upright", ours[0], {std::exp(-0.7)}}, {"aslant", ours[1], {std::exp(-1.4)}}});
 }
 
+// What is left of such a ray is mostly decided by roulette, within leaves and from one volume to
+// the next.
+TEST(Mixture, KeepsTheMeanOfFaintWays) {
+  Medium medium;
+  add_slab(medium, Profile::kTent, 3.0, hg(0), 0);
+  add_slab(medium, Profile::kEven, 0.5, hg(0), 0);
+  const PathMedium& both = medium.tracer().medium();
+  const auto ours = measure_to<1>(
+      1,
+      [&](Random& random) {
+        return std::array{both.transmittance({{5, 5, 101}, {0, 0, -1}}, kNoDistance_m, random)};
+      },
+      kPrecision);
+  expect_agreement("faint transmittance", {{"upright", ours[0], {std::exp(-3.5)}}});
+}
+
 // A slab about a sphere of 1e8 m, over one of its cube's corners: three faces meet there.
 std::vector<Compared> shell_slab(double planted = 1) {
   constexpr double radius_m = 1e8;

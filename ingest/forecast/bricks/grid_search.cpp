@@ -78,7 +78,7 @@ GridSearch::GridSearch(std::shared_ptr<const HorizontalGrid> grid) : grid_(std::
 }
 
 glm::dvec3 GridSearch::direction(glm::dvec2 at) const {
-  return unit_vector(grid_->lat_lon_deg(at.x, at.y));
+  return grid_->direction(at.x, at.y);
 }
 
 glm::dvec2 GridSearch::inside(glm::dvec2 at) const {

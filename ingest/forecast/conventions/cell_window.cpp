@@ -166,6 +166,11 @@ class WindowedGrid : public HorizontalGrid {
     if (!whole_->around() || x <= whole_->nx()) return whole_->lat_lon_deg(x, y + window_.y0);
     return whole_->lat_lon_deg(x - whole_->nx(), y + window_.y0) + glm::dvec2(0, turn_deg_);
   }
+  glm::dvec3 direction(double x, double y) const override {
+    x += window_.x0;
+    if (whole_->around() && x > whole_->nx()) x -= whole_->nx();
+    return whole_->direction(x, y + window_.y0);
+  }
 
  private:
   std::shared_ptr<const HorizontalGrid> whole_;

@@ -106,23 +106,28 @@ class PointsGrid : public HorizontalGrid {
   bool around() const override { return false; }
   const std::vector<glm::dvec3>& directions() const { return direction_; }  // of nodes
   glm::dvec2 lat_lon_deg(double x, double y) const override {
+    const glm::dvec3 d = mixed(direction_, x, y);
+    const double longitude = std::atan2(d.y, d.x) / kDegree, near = mixed(longitude_, x, y);
+    return {std::atan2(d.z, std::hypot(d.x, d.y)) / kDegree,
+            longitude + 360 * std::round((near - longitude) / 360)};
+  }
+  glm::dvec3 direction(double x, double y) const override {
+    return glm::normalize(mixed(direction_, x, y));
+  }
+
+ private:
+  template <class Value>
+  Value mixed(const std::vector<Value>& values, double x, double y) const {
     const double u = x - first_, v = y - first_;  // in nodes
     const double i = std::clamp(std::floor(u), 0.0, row_ - 2.0);
     const double j = std::clamp(std::floor(v), 0.0, rows_ - 2.0);
     const double fx = u - i, fy = v - j;  // beyond [0, 1] outside the outermost centres
     const std::size_t row = std::size_t(row_), at = std::size_t(j) * row + std::size_t(i);
-    const auto mix = [&](const auto& values) {
-      const auto low = values[at] * (1 - fx) + values[at + 1] * fx;
-      const auto high = values[at + row] * (1 - fx) + values[at + row + 1] * fx;
-      return low * (1 - fy) + high * fy;
-    };
-    const glm::dvec3 d = mix(direction_);
-    const double longitude = std::atan2(d.y, d.x) / kDegree, near = mix(longitude_);
-    return {std::atan2(d.z, std::hypot(d.x, d.y)) / kDegree,
-            longitude + 360 * std::round((near - longitude) / 360)};
+    const Value low = values[at] * (1 - fx) + values[at + 1] * fx;
+    const Value high = values[at + row] * (1 - fx) + values[at + row + 1] * fx;
+    return low * (1 - fy) + high * fy;
   }
 
- private:
   int nx_, ny_, row_, rows_;  // cells; nodes
   double first_;              // node, in cells
   std::vector<glm::dvec3> direction_;

@@ -227,8 +227,9 @@ Loaded ModelForecast::load(std::size_t time) const {
         water.from_fraction ? water_of_fraction(cloud.fraction, air, columns.interface_m, cells)
                             : model_.field(*water.variable, index);
     columns.variables.push_back(range_of(water, values));
-    for (std::size_t n = 0; n < values.size(); ++n)
-      if (!std::isnan(values[n])) empty[n % cells] = 0;
+    for (std::size_t n = 0; n < values.size(); n += cells)
+      for (std::size_t cell = 0; cell < std::min(cells, values.size() - n); ++cell)
+        if (!std::isnan(values[n + cell])) empty[cell] = 0;
     add_water(water, values, air, cloud, columns,
               is_cloud ? WaterPaths{liquid, ice} : WaterPaths{rain, rain}, result.statistics);
   }
@@ -294,13 +295,20 @@ double thinnest_cloudy_layer_m(const ForecastColumns& columns) {
   std::map<int, double> depth;  // by thickness in steps of 1 %
   const auto nz = std::size_t(columns.nz);
   double total = 0;
+  struct Last {  // of a layer's columns, which are much alike
+    int step = 0;
+    double* sum = nullptr;
+  };
+  std::vector<Last> last(nz);
   for (std::size_t cell = 0; nz > 0 && cell * nz < columns.extinction_per_m.size(); ++cell)
     for (std::size_t k = 0; k < nz; ++k) {
       const float* z = &columns.interface_m[cell * (nz + 1) + k];
       const double thick_m = double(z[1]) - double(z[0]);
       const double weight =
           std::max(double(columns.extinction_per_m[cell * nz + k]) * thick_m, 1e-12);
-      depth[int(std::lround(std::log(thick_m) * 100))] += weight;
+      const int step = int(std::lround(std::log(thick_m) * 100));
+      if (!last[k].sum || last[k].step != step) last[k] = {step, &depth[step]};
+      *last[k].sum += weight;
       total += weight;
     }
   double below = 0;

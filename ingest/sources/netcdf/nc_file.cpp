@@ -249,7 +249,7 @@ std::vector<T> NcFile::read(const FileVariable& variable, const std::vector<std:
                 nc_get_vara_float(group, id, start.data(), count.data(), result.data()))
           fail(status);
       });
-      for (T& value : result) value = T(packing.value(double(value)));
+      packing.unpack(result.data(), result.size(), result.data());
       return result;
     }
   std::vector<std::size_t> at = start, some = count;
@@ -266,8 +266,7 @@ std::vector<T> NcFile::read(const FileVariable& variable, const std::vector<std:
       if (const int status = nc_get_vara_double(group, id, at.data(), some.data(), block.data()))
         fail(status);
     });
-    for (std::size_t n = 0; n < height * row; ++n)
-      result[first * row + n] = T(packing.value(block[n]));
+    packing.unpack(block.data(), height * row, &result[first * row]);
   }
   return result;
 }

@@ -64,7 +64,9 @@ struct Packing {
   std::vector<double> fills;  // packed values that are missing
   double lowest, highest;     // packed; missing outside
   double wrap = 0;            // added to negative packed values: 256 or 65536 where _Unsigned
-  double value(double packed) const;
+  // `packed` and `values` may be the same.
+  template <class From, class To>
+  void unpack(const From* packed, std::size_t count, To* values) const;
 };
 Packing packing_of(const FileVariable& variable, int nc_type);
 

@@ -1,7 +1,9 @@
 #include <netcdf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "sources/netcdf/nc_file.h"
 
@@ -43,13 +45,21 @@ double signed_to_unsigned(double value, double wrap) {
 
 }  // namespace
 
-double Packing::value(double packed) const {
-  packed = signed_to_unsigned(packed, wrap);
-  for (const double fill : fills)
-    if (packed == fill) return std::numeric_limits<double>::quiet_NaN();
-  if (!(packed >= lowest && packed <= highest)) return std::numeric_limits<double>::quiet_NaN();
-  return packed * scale + offset;
+template <class From, class To>
+void Packing::unpack(const From* packed, std::size_t count, To* values) const {
+  const auto missing = std::numeric_limits<To>::quiet_NaN();
+  const double first_fill = fills.empty() ? std::nan("") : fills.front();  // NaN is no number's
+  const std::span<const double> more(fills.begin() + !fills.empty(), fills.end());
+  for (std::size_t n = 0; n < count; ++n) {
+    const double from = signed_to_unsigned(double(packed[n]), wrap);
+    const bool there = from >= lowest && from <= highest && from != first_fill &&
+                       (more.empty() || std::ranges::find(more, from) == more.end());
+    values[n] = there ? To(from * scale + offset) : missing;
+  }
 }
+template void Packing::unpack(const float*, std::size_t, float*) const;
+template void Packing::unpack(const double*, std::size_t, float*) const;
+template void Packing::unpack(const double*, std::size_t, double*) const;
 
 Packing packing_of(const FileVariable& variable, int type) {
   Packing packing;

@@ -68,7 +68,11 @@ double PathMedium::pass(std::size_t volume, const Kind& ray, double t_max_m, dou
   // or kFaint, with the same noise as if it were asked at the leaf's end.
   const auto goes_on = [&] {
     if (passed >= kFaint) return true;
+#if defined(NEPHO_MUTANT_ROULETTE_FOR_NOTHING)
+    passed = random.uniform() * kFaint < passed ? passed : 0;
+#else
     passed = random.uniform() * kFaint < passed ? kFaint : 0;
+#endif
     return passed > 0;
   };
   follow(*volumes_[volume], ray, t_max_m,

@@ -21,7 +21,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr int kCompression = 6;  // zlib's, as libpng's default
+constexpr int kCompression = 6, kMemory = 8;  // zlib's own
 constexpr std::size_t kLongestKey = 79;
 
 int fail(char* error, std::size_t size, const std::string& text) {
@@ -83,6 +83,30 @@ class RowFilter {
   Bytes blank_;
 };
 
+// Runs only: filtered rows of a photograph repeat little else, and the search for it takes seven
+// times as long for a file that is a tenth smaller.
+Bytes deflated(Bytes& rows) {
+  z_stream stream{};
+  if (deflateInit2(&stream, kCompression, Z_DEFLATED, MAX_WBITS, kMemory, Z_RLE) != Z_OK)
+    throw std::bad_alloc();
+  Bytes packed(deflateBound(&stream, uLong(rows.size())));
+  stream.next_in = rows.data();
+  stream.next_out = packed.data();
+  constexpr std::size_t kPiece = 1u << 30;  // zlib counts by 32 bits
+  int status = Z_OK;
+  for (std::size_t left = rows.size(); status == Z_OK;) {
+    const std::size_t piece = std::min(left, kPiece);
+    stream.avail_in = uInt(piece);
+    stream.avail_out = uInt(std::min(packed.size() - stream.total_out, kPiece));
+    status = deflate(&stream, piece == left ? Z_FINISH : Z_NO_FLUSH);
+    left -= piece - stream.avail_in;
+  }
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  if (status != Z_STREAM_END) throw std::bad_alloc();
+  return packed;
+}
+
 Bytes deflated_rows(const PictureView& picture) {
   const auto row_bytes = std::size_t(picture.width) * std::size_t(picture.channels);
   const auto height = std::size_t(picture.height);
@@ -92,12 +116,7 @@ Bytes deflated_rows(const PictureView& picture) {
   rows.reserve(height * (row_bytes + 1));
   for (std::size_t y = 0; y < height; ++y)
     filter.put(pixels + y * row_bytes, y > 0 ? pixels + (y - 1) * row_bytes : nullptr, rows);
-  uLongf size = compressBound(uLong(rows.size()));
-  Bytes packed(size);
-  if (compress2(packed.data(), &size, rows.data(), uLong(rows.size()), kCompression) != Z_OK)
-    throw std::bad_alloc();
-  packed.resize(size);
-  return packed;
+  return deflated(rows);
 }
 
 Bytes header(const PictureView& picture) {
