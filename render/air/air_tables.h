@@ -33,7 +33,7 @@ struct AirTables {
   AirTable sky_up, sky_side, sky_down, sky_low;
 };
 
-// `ground_albedo`: of what lies under most of the view. About 0.2 CPU s.
+// `ground_albedo`: of what lies under most of the view. About 0.17 CPU s.
 AirTables make_air_tables(const Air& air, double radius_m, const glm::dvec3& ground_albedo);
 
 // The same quantities without tables, by quadrature in double: for tests and the reference march.

@@ -51,6 +51,23 @@ Mask needed_of(const LeafBrick& brick) {
   return mask.none() ? mask.set() : mask;
 }
 
+// Those beside a sample, by faces: below and above along each axis.
+struct Beside {
+  std::array<int, 6> sample;
+  int count = 0;
+};
+std::vector<Beside> all_beside() {
+  std::vector<Beside> all(kSamples);
+  for (int s = 0; s < kSamples; ++s)
+    for (int stride : {1, kSide, kSide * kSide})
+      for (int sign : {-1, 1}) {
+        const int at = s / stride % kSide + sign;
+        Beside& beside = all[std::size_t(s)];
+        if (at >= 0 && at < kSide) beside.sample[std::size_t(beside.count++)] = s + sign * stride;
+      }
+  return all;
+}
+
 // Of each sample the nearest of the mask, by faces.
 std::array<int, kSamples> nearest(const Mask& mask) {
   std::array<int, kSamples> from;
@@ -62,15 +79,15 @@ std::array<int, kSamples> nearest(const Mask& mask) {
       from[std::size_t(s)] = s;
       queue.push_back(s);
     }
+  static const std::vector<Beside> beside = all_beside();
   for (std::size_t next = 0; next < queue.size(); ++next) {
-    const int s = queue[next];
-    for (int stride : {1, kSide, kSide * kSide})
-      for (int sign : {-1, 1}) {
-        const int at = s / stride % kSide + sign;
-        if (at < 0 || at >= kSide || from[std::size_t(s + sign * stride)] >= 0) continue;
-        from[std::size_t(s + sign * stride)] = from[std::size_t(s)];
-        queue.push_back(s + sign * stride);
-      }
+    const Beside& here = beside[std::size_t(queue[next])];
+    for (int n = 0; n < here.count; ++n) {
+      const int other = here.sample[std::size_t(n)];
+      if (from[std::size_t(other)] >= 0) continue;
+      from[std::size_t(other)] = from[std::size_t(queue[next])];
+      queue.push_back(other);
+    }
   }
   return from;
 }

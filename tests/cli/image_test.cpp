@@ -48,6 +48,28 @@ TEST_F(Picture, pfm_keeps_every_bit_and_its_metadata) {
   }
 }
 
+// IEC 61966-2-1 and the rounding, without the table that spares most powers. Values close to where
+// a byte ends are among them: both neighbours of each such place.
+TEST(Tone, BytesAreTheCurvesOwn) {
+  std::vector<float> values;
+  for (int i = 0; i <= 100000; ++i) values.push_back(float(i) / 100000);
+  for (int byte = 0; byte < 255; ++byte) {
+    const double code = (byte + 0.5) / 255;
+    const auto edge = float(code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4));
+    for (const float value : {std::nextafter(edge, 0.0f), edge, std::nextafter(edge, 1.0f)})
+      values.push_back(value);
+  }
+  FloatImage image(int(values.size()), 1, 3);
+  for (std::size_t p = 0; p < values.size(); ++p)
+    for (std::size_t c = 0; c < 3; ++c) image.values[3 * p + c] = values[p];
+  const ByteImage shown = to_display(image, 0, ToneMap::kNone, false);
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const double v = double(values[p]);
+    const double code = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
+    ASSERT_EQ(int(shown.values[3 * p]), int(std::floor(255 * code + 0.5))) << v;
+  }
+}
+
 // The bytes of the format, so that other programs read it: rows from the bottom up.
 TEST_F(Picture, pfm_bytes_are_the_published_ones) {
   FloatImage image(1, 2, 1);

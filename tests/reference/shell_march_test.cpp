@@ -9,6 +9,7 @@
 #include "march_support.h"
 #include "physics/physics_cpp.h"
 #include "random.h"
+#include "reference/chart_rays.h"
 
 namespace nepho {
 namespace {
@@ -31,6 +32,19 @@ Ray upward(double height_m, double zenith_rad, double azimuth_rad) {
   return {(kRadius_m + height_m) * up,
           std::cos(zenith_rad) * up + std::sin(zenith_rad) * (std::cos(azimuth_rad) * north +
                                                               std::sin(azimuth_rad) * east)};
+}
+
+// Steps as a ray's, small and large, forwards and back.
+TEST(ShellMarch, NearAnglesAreThoseOfTheArcTangent) {
+  for (const double step : {1e-7, 3e-4, 0.013, 0.4}) {
+    NearAngle near;
+    double worst = 0, x = -1.1;
+    for (int n = 0; n < 20000 && x < 1.1; ++n, x += n % 3 == 0 ? -step / 2 : step) {
+      if (n == 3000) x = 0.7;
+      worst = std::max(worst, std::abs(near.of(x) - std::atan(x)));
+    }
+    EXPECT_LE(worst, 2.3e-16) << step;
+  }
 }
 
 TEST(ShellMarch, ExponentialLayerIsChapmansFunction) {

@@ -103,6 +103,13 @@ TEST(TerrainRays, MeetWhatFineStepsMeet) {
       if (lowest_m < 0) meets_m = t;
     }
     const double ours_m = surface.distance_m(ray, true);
+    EXPECT_EQ(surface.hides(ray, true), ours_m < kNoDistance_m) << trial;
+    if (ours_m > 0 && ours_m < kNoDistance_m) {
+      const glm::dvec3 met_m = ray.origin_m + ours_m * ray.direction;
+      EXPECT_NEAR(rough.gap_m(met_m), 0, 2e-8) << trial;
+      EXPECT_EQ(surface.distance_m(ray, true, ours_m - 1e-3), kNoDistance_m) << trial;
+      EXPECT_NEAR(surface.distance_m(ray, true, ours_m + 1e-3), ours_m, 1e-6) << trial;
+    }
     if (meets_m < kNoDistance_m) {
       ++hidden;
       near += meets_m < 0.02 * kCell_m;

@@ -18,7 +18,7 @@ double bayer(int x, int y) {
 }
 
 std::uint8_t to_byte(double value, double threshold) {
-  return std::uint8_t(std::clamp(std::floor(value * 255 + 0.5 + threshold), 0.0, 255.0));
+  return std::uint8_t(std::clamp(value * 255 + 0.5 + threshold, 0.0, 255.0));
 }
 
 // to_byte(srgb_encode(value), threshold) for values up to 1: the same bytes, most without a power,
