@@ -18,7 +18,7 @@ struct Span {
   vec3 j0, j1, j2;  // emission, W m-3 sr-1 nm-1; with a sun map: of the sun's own light
 #ifdef NEPHO_SUN_MAP
   vec3 m0, m1, m2;  // of all other light
-  float lit;        // part of the sun's light that clouds leave, mean over the span
+  vec2 lit;         // part of the sun's light that clouds leave, mean over either half
 #endif
 #ifdef NEPHO_CLOUDS
   vec3 sun0, sun1, sun2;  // across its beam
@@ -61,17 +61,18 @@ Knot air_knot(float t_m) {
 }
 
 #ifdef NEPHO_SUN_MAP
+// Means over the halves of a span: where it ends in a cloud, the air in front is lit all the same.
 // Six places, so that an edge that comes near shows no steps. None where no cloud is above the span: its
 // lowest place is not under a chord's by more than the square of its length over 8 radii.
-float lit_mean(float begin_m, float length_m) {
+vec2 lit_halves(float begin_m, float length_m) {
   float scaled_m = length_m * planet_ray.stretch;
   float lowest_m = min(planet_height(begin_m), planet_height(begin_m + length_m)) -
                    scaled_m * scaled_m / (8.0 * float(planet.radius_m));
   int places = lowest_m > planet.cloud_top_m ? 0 : 6;
-  float sum = 0.0;
+  vec2 sum = vec2(0.0);
   for (int place = 0; place < places; ++place)
-    sum += sun_visible(begin_m + length_m * (1.0 / 6.0) * (float(place) + 0.5));
-  return places == 0 ? 1.0 : sum * (1.0 / 6.0);
+    sum[place / 3] += sun_visible(begin_m + length_m * (1.0 / 6.0) * (float(place) + 0.5));
+  return places == 0 ? vec2(1.0) : sum * (1.0 / 3.0);
 }
 #endif
 
@@ -111,7 +112,7 @@ void next_span() {
     span.k0 = span.k1 = span.k2 = span.j0 = span.j1 = span.j2 = vec3(0.0);
 #ifdef NEPHO_SUN_MAP
     span.m0 = span.m1 = span.m2 = vec3(0.0);
-    span.lit = 1.0;
+    span.lit = vec2(1.0);
 #endif
 #ifdef NEPHO_CLOUDS
     // Over the air, if ever.
@@ -181,7 +182,7 @@ void next_span() {
   }
 #endif
 #ifdef NEPHO_SUN_MAP
-  span.lit = lit_mean(t, span.end_m - t);
+  span.lit = lit_halves(t, span.end_m - t);
 #endif
 }
 
@@ -235,7 +236,10 @@ vec3 air_extinction(vec3 w) { return max(w.x * span.k0 + w.y * span.k1 + w.z * s
 vec3 air_emission_at(vec3 w) {
   vec3 j = max(w.x * span.j0 + w.y * span.j1 + w.z * span.j2, vec3(0.0));
 #ifdef NEPHO_SUN_MAP
-  j = span.lit * j + max(w.x * span.m0 + w.y * span.m1 + w.z * span.m2, vec3(0.0));
+  // Linear, with these means.
+  float u = w.z + 0.5 * w.y;
+  float lit = clamp(mix(span.lit.x, span.lit.y, 2.0 * u - 0.5), 0.0, 1.0);
+  j = lit * j + max(w.x * span.m0 + w.y * span.m1 + w.z * span.m2, vec3(0.0));
 #endif
   return j;
 }
