@@ -126,6 +126,7 @@ TEST(Walls, AheadInALayer) {
     lower_ones += lower;
     missed += mu < 0 && !lower;
     const double wall = lower ? -above_low : -above_high;
+    ASSERT_LT(distance, 2e6f);
     const double t = distance, off = f64::height_along_ray(radius, t, mu) - wall;
     const double slope = std::abs((double(radius) * mu + t) / radius);
     worst = std::max(worst, std::abs(off) / (thickness + t * slope));
