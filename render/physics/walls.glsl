@@ -112,7 +112,9 @@ void layer_wall_distance(Length radius, Length above_low, Length above_high, Num
   lower = falls && !(discriminant < Area(0.0));
   if (falls && !lower) {
     Area wider = (above_low - above_high) * (Number(2.0) * radius - above_low - above_high);
+#ifndef NEPHO_MUTANT_ONE_SPHERE
     discriminant = discriminant + wider;
+#endif
     c = c - wider;
   }
   distance = no_hit();

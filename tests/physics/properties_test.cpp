@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 
 #include "accuracy_report.h"
 #include "physics/physics_cpp.h"
@@ -101,6 +102,64 @@ TEST(Walls, EndsOfTheRange) {
             f32::no_hit());
   EXPECT_EQ(f32::angular_wall_distance(6.4e6f, 0.1f, 1, std::tan(0.1f)) > 0, true);
   EXPECT_EQ(f32::angular_wall_distance(6.4e6f, 0, 1, 0), f32::no_hit());
+}
+
+// Against both spheres in double: the same wall, and its height as good as a float of the layer's
+// thickness and of the way there.
+TEST(Walls, AheadInALayer) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> part(0, 1);
+  double worst = 0;
+  int lower_ones = 0, missed = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const float radius = 6.36e6f + 4e4f * part(random), thickness = 200 + 16000 * part(random);
+    const float above_low = thickness * part(random), above_high = above_low - thickness;
+    const float mu = 0.2f * (part(random) - 0.5f) * (n % 3 == 0 ? 1.0f : 0.1f);
+    float distance = 0;
+    bool lower = false;
+    f32::layer_wall_distance(radius, above_low, above_high, mu, mu < 0, distance, lower);
+    double near = 0, far = 0, high_near = 0, high_far = 0;
+    f64::sphere_wall_distances(radius, above_low, mu, near, far);
+    f64::sphere_wall_distances(radius, above_high, mu, high_near, high_far);
+    const bool expected = mu < 0 && near < f64::no_hit();
+    ASSERT_EQ(lower, expected) << radius << ' ' << above_low << ' ' << mu;
+    lower_ones += lower;
+    missed += mu < 0 && !lower;
+    const double wall = lower ? -above_low : -above_high;
+    ASSERT_LT(distance, 2e6f);
+    const double t = distance, off = f64::height_along_ray(radius, t, mu) - wall;
+    const double slope = std::abs((double(radius) * mu + t) / radius);
+    worst = std::max(worst, std::abs(off) / (thickness + t * slope));
+  }
+  EXPECT_GT(lower_ones, 1000);
+  EXPECT_GT(missed, 1000);
+  EXPECT_LT(worst, 3e-7);
+}
+
+// Places along a ray through a leaf, in its cells, against the arc tangent.
+TEST(Walls, ParabolaOfAnAngle) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> part(0, 1);
+  for (const double leaf_rad : {0.1, 0.03}) {
+    double worst = 0;
+    for (int n = 0; n < 5000; ++n) {
+      const double turn = 2 * std::numbers::pi * part(random), level = 0.2 + 0.8 * part(random);
+      const double radial = level * std::cos(turn), tangential = level * std::sin(turn);
+      const double t = 0.3 * part(random);
+      const double reach = 0.5 * leaf_rad * std::hypot(1 + t * radial, t * tangential);
+      const double middle = f64::angle_along_ray(1, t, radial, tangential);
+      const auto away = [&](double u) {
+        return f64::angle_along_ray(1, t + u, radial, tangential) - middle;
+      };
+      if (std::abs(away(reach) - away(-reach)) > leaf_rad) continue;
+      double rise = 0, fade = 0;
+      f64::angle_growth_along_ray(1, t, radial, tangential, reach, rise, fade);
+      for (double u = -reach; u <= reach; u += 0.125 * reach)
+        worst = std::max(worst, std::abs(rise * u * (1 - fade * u) - away(u)) * 8 / leaf_rad);
+    }
+    EXPECT_LT(worst, 0.2 * leaf_rad * leaf_rad);
+    EXPECT_GT(worst, 0.02 * leaf_rad * leaf_rad);
+  }
 }
 
 TEST(Sky, IsContinuousAndReachesItsThreeColours) {
