@@ -24,7 +24,7 @@ std::array<int, 3> tile_origin(std::uint64_t tile, const std::array<int, 3>& siz
 // Bytes that nodes, bricks and light tiles take on the GPU, staging included: TileCost::total.
 std::uint64_t bytes_with_sky(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit);
 std::uint64_t bytes_without_sky(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit);
-// With a second atlas, and at most as many bricks of ice.
+// With ice beside extinction in the atlas, and at most as many bricks of ice.
 std::uint64_t bytes_with_sky_and_ice(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit);
 std::uint64_t bytes_with_ice(std::uint64_t nodes, std::uint64_t bricks, std::uint64_t lit);
 

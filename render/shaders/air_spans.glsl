@@ -2,8 +2,12 @@
 // are quadratic. Spans grow with height and distance alone, smoothly, and the last one ends where the
 // air does: pictures show no knots. Clouds are marched within the spans.
 
-// Spans are as short as the tolerance asks for. At 1e-2 they change pictures by 0.06 to 0.3 % rms.
+// Spans are as short as the tolerance asks for: what they miss goes with their length to the power of 1.7,
+// and with this is below the tolerance on 99 % of the pixels at 1e-2, below twice that of the steps further on.
 float air_fineness() {
+#ifdef NEPHO_MUTANT_LONG_SPANS
+  return 0.1 * pow(1e-2 / frame.tolerance, 1.0 / 3.0);
+#endif
 #ifdef NEPHO_CELL_EXACT
   return 1.5;
 #else
@@ -236,9 +240,9 @@ vec3 air_extinction(vec3 w) { return max(w.x * span.k0 + w.y * span.k1 + w.z * s
 vec3 air_emission_at(vec3 w) {
   vec3 j = max(w.x * span.j0 + w.y * span.j1 + w.z * span.j2, vec3(0.0));
 #ifdef NEPHO_SUN_MAP
-  // Linear, with these means.
+  // Linear between the middles of the halves, and a little beyond: an edge is not drawn on over a span.
   float u = w.z + 0.5 * w.y;
-  float lit = clamp(mix(span.lit.x, span.lit.y, 2.0 * u - 0.5), 0.0, 1.0);
+  float lit = clamp(mix(span.lit.x, span.lit.y, clamp(2.0 * u - 0.5, -0.25, 1.25)), 0.0, 1.0);
   j = lit * j + max(w.x * span.m0 + w.y * span.m1 + w.z * span.m2, vec3(0.0));
 #endif
   return j;

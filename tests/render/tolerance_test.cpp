@@ -143,7 +143,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Tolerance, ::testing::ValuesIn([] {
                          });
 
 // With air between and interpolated pixels, against marches of all pixels in short fixed steps:
-// what the tolerance governs of them. Spans of air and tables are the same in both.
+// what the tolerance governs of them. Spans of air and tables are the same in both; spans apart
+// below.
 using ToleranceOverAPlanet = GlFixture;
 
 void expect_kept_over_a_planet(const char* name, RenderRequest request) {
@@ -185,6 +186,38 @@ TEST_F(ToleranceOverAPlanet, IsKeptUnderClouds) {
   request.settings.pixels_per_voxel = 1e-3;
   look(request, 300, 12);
   expect_kept_over_a_planet("under puffs", request);
+}
+
+// Spans of air alone: the same short steps, with spans as the tolerance asks and as 1e-4 does.
+// Towers behind tens of km of air: in front of a cloud it is lit, within it it is not. Below 1e-2
+// steps follow the tolerance all the way, spans with its cube root.
+TEST_F(ToleranceOverAPlanet, IsKeptBySpansOfAir) {
+  const FieldSource towers(
+      std::make_shared<BoxChart>(glm::dvec3(-80e3, 20e3, kRadius_m + 1000),
+                                 glm::dmat3(160e3, 0., 0., 0., 160e3, 0., 0., 0., 9000.)),
+      Lattice({kSplitXy, kSplitXy, kSplitXy, kSplitXyz, kSplitXyz}),
+      [](glm::dvec3 p) { return 2e-2 * cloud(1.5e-4 * (p - kRadius_m * kUp)); });
+  RenderRequest request = planet_request({&towers});
+  request.settings.pixels_per_voxel = 1e-3;
+  request.settings.light = Light::kOctaves;
+  request.settings.width = 128;
+  request.settings.height = 72;
+  request.settings.step_voxels = 0.5;
+  request.settings.pixels = WhichPixels::kAll;
+  look(request, 2000, 1, 30);
+  request.settings.tolerance = 1e-4;
+  const HdrImage truth = render(request).image;
+  for (const double tolerance : {1e-1, 1e-2, 1e-3}) {
+    request.settings.tolerance = tolerance;
+    const double error = quantile(errors_of(render(request).image, truth, Counts::kAll), 0.99);
+    const double most = tolerance < 1e-2 ? 3 * tolerance : tolerance;
+    std::printf("measured: spans of air, tolerance %g: error %.1e\n", tolerance, error);
+    append_accuracy_row(
+        "Tolerance",
+        "towers, " + report_number(tolerance) + ": error of 99 % of the pixels by spans of air",
+        error, most, "relative luminance");
+    EXPECT_LE(error, most);
+  }
 }
 
 }  // namespace
