@@ -9,6 +9,8 @@ const float DOUBT_OF_STEP = 1.0;
 float doubt_of_ray() { return clamp(0.1 * pow(1e4 * frame.tolerance, 1.0 / 6.0), 0.1, 0.2); }
 // A doubt is that of the longer steps: what is left is this part of it.
 const float LEFT_OF_DEPTH = 0.5, LEFT_OF_SOURCE = 0.3;
+// Of a change of the source over a part that holds all of the depth, what a line may be off.
+const float BLIND = 0.1;
 // Light that counts as if it were there already: a ray of less optical depth is hardly seen.
 const float FAINT = 0.005;
 // Voxels in a step at most: where there was nothing, no hat may fall between two samples.
@@ -70,6 +72,10 @@ void march_segment(inout Seen seen, float t, float end, bool smooth_) {
     whole = mix(halves, whole, 0.1);
 #endif
     float doubt = here * (LEFT_OF_SOURCE * luminance_of(abs(halves - whole)) + LEFT_OF_DEPTH * min(lost, 1.0) * max(bright, behind));
+    // Where one part holds nearly all of the depth, whole and halves agree, whatever the source does there.
+    float even = 4.0 * split, blind = (1.0 - even) * (1.0 - even);
+    vec3 across = x2 > x1 ? s1 - sm : sm - march.s0;
+    doubt += here * blind * blind * BLIND * min(x, 1.0) * luminance_of(abs(across));
     float budget = frame.tolerance * (DOUBT_OF_STEP * here * luminance_of(halves) +
                    doubt_of_ray() * (luminance_of(seen.radiance) + here * max(FAINT * bright, through * behind)));
     // Its error goes with the cube of its length.
