@@ -64,14 +64,9 @@ void dekker_product(Length a, Length b, OUT(Area) product, OUT(Area) error) {
   error = e4;
 }
 
-// Both distances to a sphere that lies `above` below the camera (camera minus sphere, from
-// wall_height), ascending and signed; no_hit() twice if missed. radius: of the camera. b^2 - c is
-// taken of exact products, because that difference decides rays that graze. Error 2.7 eps kappa.
-void sphere_wall_distances(Length radius, Length above, Number cos_zenith, OUT(Length) first,
-                           OUT(Length) second) {
-  PRECISE Length b = radius * cos_zenith;
+// b^2 - c of the quadratic for a sphere that lies `above` below the camera, of exact products.
+Area sphere_discriminant(Length radius, Length above, Length b, OUT(Area) c) {
   PRECISE Length sum = Number(2.0) * radius - above;
-  Area c;
   Area c_error;
   Area b_squared;
   Area b_error;
@@ -80,6 +75,17 @@ void sphere_wall_distances(Length radius, Length above, Number cos_zenith, OUT(L
   PRECISE Area coarse = b_squared - c;
   PRECISE Area fine = b_error - c_error;
   PRECISE Area discriminant = coarse + fine;
+  return discriminant;
+}
+
+// Both distances to a sphere that lies `above` below the camera (camera minus sphere, from
+// wall_height), ascending and signed; no_hit() twice if missed. radius: of the camera. b^2 - c is
+// taken of exact products, because that difference decides rays that graze. Error 2.7 eps kappa.
+void sphere_wall_distances(Length radius, Length above, Number cos_zenith, OUT(Length) first,
+                           OUT(Length) second) {
+  PRECISE Length b = radius * cos_zenith;
+  Area c;
+  Area discriminant = sphere_discriminant(radius, above, b, c);
   first = no_hit();
   second = no_hit();
   if (discriminant < Area(0.0)) return;
@@ -99,16 +105,8 @@ void layer_wall_distance(Length radius, Length above_low, Length above_high, Num
                          bool falls, OUT(Length) distance, OUT(bool) lower) {
   PRECISE Length b = radius * cos_zenith;
   PRECISE Length above = falls ? above_low : above_high;
-  PRECISE Length sum = Number(2.0) * radius - above;
   Area c;
-  Area c_error;
-  Area b_squared;
-  Area b_error;
-  dekker_product(above, sum, c, c_error);
-  dekker_product(b, b, b_squared, b_error);
-  PRECISE Area coarse = b_squared - c;
-  PRECISE Area fine = b_error - c_error;
-  PRECISE Area discriminant = coarse + fine;
+  Area discriminant = sphere_discriminant(radius, above, b, c);
   lower = falls && !(discriminant < Area(0.0));
   if (falls && !lower) {
     Area wider = (above_low - above_high) * (Number(2.0) * radius - above_low - above_high);
